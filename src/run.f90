@@ -45,17 +45,17 @@ module run_m
 
 contains
 
-  !> Run what the command line asks for.
+  !> Run the deck or restart file of the command line.
   subroutine run_deck(arguments, ranks, has_ended, error)
     type(arguments_t), intent(inout) :: arguments !! gets the job name of a restart file
     type(ranks_t), intent(in) :: ranks
-    logical, intent(out) :: has_ended             !! how the run ended has been told
+    logical, intent(out) :: has_ended             !! the end of the run has been reported
     type(error_t), allocatable, intent(out) :: error
     type(model_t) :: model
     type(state_t) :: state
     type(monitor_t) :: monitor
     type(run_info_t) :: info
-    logical :: has_all   !! each process has all of the model
+    logical :: has_all   !! each process holds the whole model
 
     has_ended = .false.
     monitor%ranks = ranks
@@ -91,7 +91,7 @@ contains
       call make_state(has_all, model, state, monitor, error)
       if (allocated(error)) return
     end if
-    ! The folder of the results and the log in it, which no other run may have.
+    ! Folder of the results, and the log.
     if (ranks%mine == 0) then
       call make_directory(arguments%directory, error)
       if (.not. allocated(error)) call check_names(monitor%restarts, &
@@ -115,7 +115,7 @@ contains
     call share_error(ranks, error)
   end subroutine run_deck
 
-  !> The first process reads the deck, alone.
+  !> Read the deck, in the first process only.
   subroutine read_model(arguments, monitor, model, effective, error)
     type(arguments_t), intent(inout) :: arguments
     type(monitor_t), intent(inout) :: monitor
@@ -136,8 +136,8 @@ contains
     if (allocated(error)) return
     if (monitor%ranks%n > 1 .and. model%controls%implicit%is_on) then
       call raise(error, 'the deck asks for the implicit method (*CONTROL_IMPLICIT_GENERAL) and ' &
-        //'the command for '//to_text(monitor%ranks%n)//' processes: implicit runs have one, ' &
-        //'with threads (ncpu=)', status_input)
+        //'the command line for '//to_text(monitor%ranks%n)//' processes: implicit runs have one ' &
+        //'process', status_input)
       return
     end if
     call move_alloc(request%files, monitor%restarts%inputs)
@@ -146,10 +146,10 @@ contains
     call renumber_model(model)
   end subroutine read_model
 
-  !> The deck of a run that goes on from a restart file: that of the file, with what the command
-  !> line and a small deck change.
+  !> Deck of a restarted run: the deck in the restart file, with the changes of the command line and
+  !> of a small deck.
   subroutine get_restart_deck(arguments, monitor, request, error)
-    type(arguments_t), intent(inout) :: arguments  !! gets the job name of the file
+    type(arguments_t), intent(inout) :: arguments  !! gets the job name of the restart file
     type(monitor_t), intent(inout) :: monitor
     type(deck_request_t), intent(inout) :: request
     type(error_t), allocatable, intent(out) :: error
@@ -157,10 +157,10 @@ contains
 
     call read_restart_run(arguments%restart, monitor%restarts, deck, error)
     if (allocated(error)) return
-    call write_log(monitor%log, 'goes on from the restart file '//arguments%restart)
+    call write_log(monitor%log, 'restart from the restart file '//arguments%restart)
     if (monitor%restarts%program /= program_text()) call write_log(monitor%log, 'the restart ' &
-      //'file was written by another build ('//monitor%restarts%program//'): the last bits may ' &
-      //'differ')
+      //'file was written by another build ('//monitor%restarts%program//'): results may ' &
+      //'differ in their last digits')
     if (.not. allocated(arguments%job)) arguments%job = monitor%restarts%job
     request%path = arguments%restart
     if (allocated(arguments%deck)) then
@@ -182,15 +182,16 @@ contains
       call move_alloc(deck, request%text)
     end if
     if (.not. only_end_time(arguments)) call raise(error, &
-      'when a run goes on the command line may change its end time alone (endtim=)', &
+      'of the overrides a restart allows the end time only (endtim=)', &
       status_input)
   end subroutine get_restart_deck
 
-  !> A whole deck beside the restart file must be that of the file but for what may change.
+  !> Check that a whole deck beside the restart file equals the deck in the file, except for entries
+  !> that a restart may change.
   subroutine check_whole_deck(arguments, deck, is_implicit, request, error)
     type(arguments_t), intent(in) :: arguments
-    character(*), intent(in) :: deck               !! that of the file
-    logical, intent(in) :: is_implicit             !! method of the run that wrote it
+    character(*), intent(in) :: deck               !! deck in the restart file
+    logical, intent(in) :: is_implicit             !! method of the run that wrote the file
     type(deck_request_t), intent(inout) :: request
     type(error_t), allocatable, intent(out) :: error
     type(deck_request_t) :: whole
@@ -216,8 +217,8 @@ contains
     end if
   end subroutine check_whole_deck
 
-  !> The state from which the run begins. That of the first process comes first: the others, which
-  !> have no elements but their own, need masses from it.
+  !> Make the initial state. The first process comes first: the others hold their own elements only
+  !> and need masses from it.
   subroutine make_state(has_all, model, state, monitor, error)
     logical, intent(in) :: has_all
     type(model_t), intent(inout) :: model
@@ -239,8 +240,8 @@ contains
 
   contains
 
-    !> That of time zero, or of the restart file if all that is read later can be; before any file
-    !> of an earlier run is touched.
+    !> State at time zero or of the restart file, the latter with all later components checked
+    !> before a file of an earlier run is changed.
     subroutine make_own_state()
       associate (restarts => monitor%restarts)
         if (restarts%is_restart) then
@@ -264,20 +265,20 @@ contains
     text = version//', '//build_type//', '//compiler//', '//flags
   end function program_text
 
-  !> Open the files and make the state from which the run begins.
+  !> Open the files, make the initial state and run the dynamic relaxation.
   subroutine begin_run(arguments, has_all, model, info, state, monitor, error)
     type(arguments_t), intent(in) :: arguments
     logical, intent(in) :: has_all
     type(model_t), intent(inout) :: model
     type(run_info_t), intent(inout) :: info
-    type(state_t), intent(inout) :: state  !! where the run goes on it is known already
+    type(state_t), intent(inout) :: state  !! known already in a restart
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
     logical :: relaxes
 
     if (monitor%ranks%mine == 0) then
       call write_deck(info%effective_deck, monitor%restarts, error)
-      ! What the results file keeps about the run besides.
+      ! Data of the run for the results file.
       if (allocated(model%controls%title)) info%title = model%controls%title
       info%deck = monitor%restarts%deck
       info%version = version
@@ -301,12 +302,12 @@ contains
       (state%relaxation%n > 0 .or. .not. monitor%restarts%is_restart)
     if (relaxes) call relax(model, monitor, state, error)
     if (allocated(error)) return
-    ! The loads of relaxation alone (SIDR 1) no longer act.
+    ! Loads of the relaxation only (SIDR 1) end here.
     if (any(model%curves%phase == 1)) call switch_loads(model, 1)
     call release_start_data(model)
     call release_memory()
     if (monitor%restarts%is_restart) call restore_outputs(model, state, monitor, error)
-    ! Behind relaxation a run begins at time zero, wherever it has come from.
+    ! After relaxation a run begins at time zero, also in a restart.
     if (relaxes) monitor%restarts%is_restart = .false.
     call release_remote(model, monitor%ranks, state)
     call share_error(monitor%ranks, error)
@@ -314,8 +315,8 @@ contains
       call begin_status(model, state, monitor)
   end subroutine begin_run
 
-  !> Make the effective deck, which restart files will hold; what an earlier run of this name has
-  !> left of these is removed.
+  !> Write the effective deck, which restart files contain, and remove restart files of an earlier
+  !> run of this name.
   subroutine write_deck(effective, restarts, error)
     character(*), intent(in) :: effective
     type(restarts_t), intent(inout) :: restarts
@@ -333,8 +334,8 @@ contains
       effective, error)
   end subroutine write_deck
 
-  !> The file status.out from where the run begins; <job>.status.out where the job has a name of its
-  !> own (jobid=), as in LS-DYNA.
+  !> Begin the file status.out; <job>.status.out where the job has a name of its own (jobid=), as in
+  !> LS-DYNA.
   subroutine begin_status(model, state, monitor)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -356,7 +357,7 @@ contains
     call write_status(monitor%progress, monitor%clock, 'running')
   end subroutine begin_status
 
-  !> Advance to the end, close the files and say how it ended.
+  !> Advance to the end, close the files and report the end.
   subroutine drive(arguments, model, state, monitor, error)
     type(arguments_t), intent(in) :: arguments
     type(model_t), intent(inout) :: model
@@ -373,7 +374,7 @@ contains
     else if (model%controls%implicit%is_on) then
       call advance_implicit(model, state, monitor, reason, error)
     else
-      ! Threads that have enough to do.
+      ! Use only as many threads as have enough elements.
       n_thread = max(1, min(arguments%n_thread, &
         model%mesh%n_element/monitor%ranks%n/arguments%thread_share))
       call advance_explicit(model, n_thread, state, monitor, reason, error)
@@ -392,9 +393,9 @@ contains
       'stopped on request at time '//to_text(state%time), status_stopped)
   end subroutine drive
 
-  !> The end of a run that could not begin, or was stopped before its first state. The results file
-  !> has no state and does not take its name: that of a run before a restart keeps its states. Nor
-  !> does status.out speak of a run before.
+  !> End a run that failed or was stopped before its first state. The results file has no state and
+  !> does not get its name, so that the file of a run before a restart keeps its states; status.out
+  !> is written anew.
   subroutine report_failed_start(model, state, monitor, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -416,7 +417,7 @@ contains
     if (allocated(stop) .and. .not. allocated(error)) call move_alloc(stop, error)
   end subroutine report_failed_start
 
-  !> Write the timing file and say how the run ended: by `error` or else for `reason`.
+  !> Write the timing file and report the end: by `error`, or else for `reason`.
   subroutine report_end_of_run(model, state, reason, monitor, error)
     type(model_t), intent(in) :: model
     character(*), intent(in) :: reason

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Forces of single elements on their corners, which the step adds up before anyone can ask for
-!> them: where a history wants them their chunks are stepped a second time, and then are what they
-!> were.
+!> Forces of single elements on their corners, for cross sections. The step sums element forces at
+!> the nodes, so chunks with elements of cross sections are stepped a second time where a history
+!> needs them, and then restored.
 module cut_forces_m
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t, scatter_forces
@@ -18,20 +18,21 @@ module cut_forces_m
 
 contains
 
-  !> What the elements of all cross sections put on their corners: internal force with that of
-  !> hourglass control, bulk viscosity and stiffness damping, as the step from `elements` gives it,
-  !> or where that is over the step from `before`.
+  !> Forces of the elements of all cross sections on their corners: internal force with hourglass
+  !> control, bulk viscosity and stiffness damping, of the step from `elements`, or from `before`
+  !> where that step is over.
   subroutine find_cut_forces(model, chunks, motion, times, elements, force, before)
     type(model_t), intent(in) :: model
-    integer, intent(in) :: chunks(2)                   !! first and last one that are known
+    integer, intent(in) :: chunks(2)                   !! first and last chunk of this process
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node)
-    real(wp), intent(in) :: times(2)                   !! of the motion, and the step that led there
-    type(block_state_t), intent(inout) :: elements     !! on return as they were
-    real(wp), intent(inout) :: force(:, :)             !! (8, n) x, y of four corners of each; it
-                                                       !! stays of elements in other chunks
+    real(wp), intent(in) :: times(2)                   !! time of the motion, and the step before it
+    type(block_state_t), intent(inout) :: elements     !! unchanged on return
+    real(wp), intent(inout) :: force(:, :)             !! (8, n) x, y of four corners of each;
+                                                       !! unchanged for elements of other processes
     type(packed_buffer_t), intent(inout), optional :: before(:) !! of `store_cut_chunks`
     type(packed_buffer_t) :: present_values
-    real(wp), allocatable :: of_slots(:, :, :) !! (8, chunk_size, n_chunk) where elements are cut
+    real(wp), allocatable :: of_slots(:, :, :) !! (8, chunk_size, n_chunk) in chunks of cross
+                                               !! sections
     type(element_chunk_t) :: chunk
     integer, allocatable :: list(:)
     integer :: i, k, n, slot
@@ -50,7 +51,7 @@ contains
           + 1), motion, times(2), elements, chunk)
       end if
       call restore_values(present_values, elements)
-      ! Minus the internal force; the third corner of a triangle is its fourth as well.
+      ! Minus the internal force; the third corner of a triangle is also its fourth.
       of_slots(:, :, list(i)) = 0.0_wp
       call scatter_forces(model%layout%chunk_elements(list(i)), own, chunk, &
         of_slots(1, 1, list(i)))
@@ -67,22 +68,22 @@ contains
     end do
   end subroutine find_cut_forces
 
-  !> Copy the chunks that have elements of cross sections, before a step.
-  subroutine store_cut_chunks(model, elements, kept)
+  !> Copy the chunks with elements of cross sections, before a step.
+  subroutine store_cut_chunks(model, elements, stored)
     type(model_t), intent(in) :: model
-    type(block_state_t), intent(inout) :: elements     !! stay as they are
-    type(packed_buffer_t), allocatable, intent(inout) :: kept(:)
+    type(block_state_t), intent(inout) :: elements     !! unchanged
+    type(packed_buffer_t), allocatable, intent(inout) :: stored(:)
     integer, allocatable :: list(:)
     integer :: i
 
     list = cut_chunks(model)
-    if (.not. allocated(kept)) allocate (kept(size(list)))
+    if (.not. allocated(stored)) allocate (stored(size(list)))
     do i = 1, size(list)
-      call gather_values(tile_t(list(i), list(i)), elements, kept(i))
+      call gather_values(tile_t(list(i), list(i)), elements, stored(i))
     end do
   end subroutine store_cut_chunks
 
-  !> Chunks with elements of cross sections, each once, rising.
+  !> Chunks with elements of cross sections, each once, in rising order.
   pure function cut_chunks(model) result(list)
     type(model_t), intent(in) :: model
     integer, allocatable :: list(:)

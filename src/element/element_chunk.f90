@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Work arrays of one chunk of quads, plane or round. All quantities of a one-point quad follow from
-!> the two diagonals d31 = x3 - x1, d42 = x4 - x2, from h.x = x1 - x2 + x3 - x4 and in axisymmetric
-!> bodies from the sum s of the radii.
+!> Work arrays of one chunk of quads, plane or axisymmetric. All quantities of a one-point quad
+!> follow from the diagonals d31 = x3 - x1, d42 = x4 - x2, from h.x = x1 - x2 + x3 - x4 and in
+!> axisymmetric models from the sum s of the radii.
 module element_chunk_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size, local_kind
@@ -15,7 +15,7 @@ module element_chunk_m
   integer, parameter :: reference_sum = 7, reference_inverse = 8, reference_mass = 9, &
     n_axisym_reference = 12
 
-  !> One chunk.
+  !> Work arrays of one chunk.
   type :: element_chunk_t
     logical :: is_axisymmetric
     real(wp) :: u31(2, chunk_size), v31(2, chunk_size) !! u and v of node 3 minus node 1
@@ -28,12 +28,15 @@ module element_chunk_m
     real(wp), dimension(chunk_size) :: inverse_area       !! 1/A now
     real(wp), dimension(chunk_size) :: stretch            !! A/A0 - 1
     real(wp), dimension(chunk_size) :: trace              !! volumetric strain rate D_xx + D_yy
-    real(wp), dimension(chunk_size) :: pressure           !! tension positive: K ln(J), bulk
-                                                          !! viscosity added
+    real(wp), dimension(chunk_size) :: pressure           !! tension positive: K ln(J), with bulk
+                                                          !! viscosity
     real(wp), dimension(chunk_size) :: heat               !! work of the deviator in the step, for
                                                           !! an equation of state
-    real(wp), dimension(chunk_size) :: law_mean, law_energy, law_bulk, law_shear !! where the law
-                                                          !! gives the pressure: see `eos_pressure`
+    real(wp), dimension(chunk_size) :: law_mean, law_energy, law_bulk, law_shear !! pressure and
+                                                                                 !! moduli of laws
+                                                                                 !! that give the
+                                                                                 !! pressure: see
+                                                                                 !! `eos_pressure`
     real(wp), dimension(chunk_size) :: qx, qy             !! hourglass force amplitude
     real(wp), dimension(chunk_size) :: hourglass_work     !! its work in the step
     real(wp), dimension(2, chunk_size) :: force3, force4 !! x, y of nodes 3, 4 without hourglass
@@ -54,10 +57,10 @@ module element_chunk_m
 
 contains
 
-  !> Differences of the nodal motion, displacement and velocity apart: pairs are what the vectorised
-  !> loops read without a remainder. The loop over elements stays scalar: each node is one 32-byte
-  !> load, where a vectorised gather would be several times slower. Of axisymmetric quads the sums
-  !> of the radial motion too; all nodes of padding are one: it carries no strain.
+  !> Differences of the nodal motion; displacement and velocity in separate pairs, which the
+  !> vectorised loops read without a remainder. The loop over elements stays scalar: each node is
+  !> one 32-byte load, several times faster than a vectorised gather. For axisymmetric quads also
+  !> the sums of the radial motion. All nodes of padding are the same, so it has no strain.
   pure subroutine gather_motion(is_axisymmetric, nodes, motion, chunk)
     logical, intent(in) :: is_axisymmetric
     integer, intent(in) :: nodes(4, chunk_size)
@@ -83,7 +86,7 @@ contains
       chunk%hu(:, i) = h(1:2)
       chunk%hv(:, i) = h(3:4)
       if (.not. is_axisymmetric) cycle
-      ! All four at a time, told in so many words: two of the sums are not asked for.
+      ! All four at a time, since vectors of four are faster; two of the sums are not needed.
       !$omp simd simdlen(4)
       do k = 1, 4
         s(k) = h(k) + 2.0_wp*(motion(k, nodes(2, i)) + motion(k, nodes(4, i)))
@@ -99,10 +102,10 @@ contains
     end do
   end subroutine gather_motion
 
-  !> Add the nodal forces of a chunk to the tile's own nodes, x and y of a node at a time (told to
-  !> the compiler in so many words: left alone it takes them one by one, half as fast again); of
-  !> axisymmetric quads the force of the hoop stress to all four. Padding is left out: all of it has
-  !> one node, where each sum would wait for the one before.
+  !> Add the nodal forces of a chunk to the tile's nodes, with explicit vectors of x and y (the
+  !> compiler's own choice takes half as long again); for axisymmetric quads also the force of the
+  !> hoop stress. Padding is left out: all of it has one node, where each sum would wait for the
+  !> previous one.
   pure subroutine scatter_forces(n_element, local, chunk, force)
     integer, intent(in) :: n_element             !! elements, in the first slots
     integer(local_kind), intent(in) :: local(4, chunk_size) !! local numbers in the tile

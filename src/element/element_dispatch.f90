@@ -1,9 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Element forces tile by tile, and the one place that asks for the element form. From the forces of
-!> tiles to those of nodes: interior nodes belong to one tile; special ones get a slot from each
-!> tile that touches them, and these are added in a fixed order. And all values of a tile's elements
-!> that a step may change, one behind the other: whether it has changed any is seen by their bits,
-!> and a step that only tries puts them back.
+!> Element forces tile by tile, and the selection of the element form. From forces of tiles to
+!> forces of nodes: interior nodes belong to one tile; special nodes get a slot from each tile that
+!> touches them, and the slots are added in a fixed order. Element values of a tile that a step may
+!> change can be gathered into a buffer, compared bit by bit, and restored.
 module element_dispatch_m
   use kinds_m, only : wp, long
   use block_state_m, only : block_state_t
@@ -29,8 +28,8 @@ contains
     n = merge(n_point, 1, any(section%element_form == [form_full, form_axisym_full]))
   end function point_count
 
-  !> Advance all elements of one tile by the step `dt` that led here and sum their internal forces
-  !> on the tile's local nodes.
+  !> Advance all elements of one tile by the step `dt` before the present motion and sum their
+  !> internal forces on the tile's local nodes.
   subroutine add_tile_forces(model, tile, motion, dt, elements, force)
     type(model_t), intent(in) :: model
     type(tile_t), intent(in) :: tile
@@ -53,8 +52,8 @@ contains
     end do
   end subroutine add_tile_forces
 
-  !> Motion of a tile's nodes by their local numbers. It is read in order here, and local numbers
-  !> take half of the memory of global ones.
+  !> Motion of a tile's nodes by local number. It is read in order here, and local numbers need half
+  !> the memory of global ones.
   pure subroutine gather_tile_motion(tile, special_node, motion, near)
     type(tile_t), intent(in) :: tile
     integer, intent(in) :: special_node(*)
@@ -71,7 +70,8 @@ contains
     end do
   end subroutine gather_tile_motion
 
-  !> Motion of one node: for a loop over the four the compiler would call a routine.
+  !> Copy the motion of one node; for a loop over the four components the compiler would call a
+  !> routine.
   pure subroutine copy_node(motion, near)
     real(wp), intent(in) :: motion(4)
     real(wp), intent(inout) :: near(4)
@@ -82,7 +82,7 @@ contains
     near(4) = motion(4)
   end subroutine copy_node
 
-  !> Local numbers of a chunk as ordinary integers.
+  !> Local numbers of a chunk as default integers.
   pure subroutine widen(local, numbers)
     integer(local_kind), intent(in) :: local(4*chunk_size)
     integer, intent(out) :: numbers(4*chunk_size)
@@ -94,7 +94,7 @@ contains
     end do
   end subroutine widen
 
-  !> A tile's forces on its special nodes into its force slots.
+  !> Copy a tile's forces on its special nodes into its force slots.
   subroutine scatter_tile_forces(tile, force, force_slots)
     type(tile_t), intent(in) :: tile
     real(wp), intent(in) :: force(2, *)          !! of the tile's local nodes
@@ -108,7 +108,7 @@ contains
     end do
   end subroutine scatter_tile_forces
 
-  !> A tile's forces on its interior nodes into the nodal array, for a cycle that writes.
+  !> Copy a tile's forces on its interior nodes into the nodal array, for a cycle that writes.
   subroutine store_tile_forces(tile, force, internal_force)
     type(tile_t), intent(in) :: tile
     real(wp), intent(in) :: force(2, *)
@@ -118,7 +118,7 @@ contains
       force(:, 1:tile%last_node - tile%first_node + 1)
   end subroutine store_tile_forces
 
-  !> Internal forces of the special nodes first .. last: their slots in their fixed order.
+  !> Internal forces of the special nodes first .. last: sum of their slots in fixed order.
   subroutine sum_special_forces(layout, force_slots, first, last, force)
     type(layout_t), intent(in) :: layout
     real(wp), intent(in) :: force_slots(2, *)
@@ -128,7 +128,7 @@ contains
     call sum_slots(first, last, layout%node_slots, layout%slot_list, force_slots, force)
   end subroutine sum_special_forces
 
-  !> On arrays of known shape: through the layout each access costs its stride.
+  !> Sum of slots, on arrays of known shape: access through the layout would cost a stride each.
   subroutine sum_slots(first, last, node_slots, slot_list, force_slots, force)
     integer, intent(in) :: first, last, node_slots(*), slot_list(*)
     real(wp), intent(in) :: force_slots(2, *)
@@ -148,10 +148,10 @@ contains
     end do
   end subroutine sum_slots
 
-  !> What a step may change of the elements of a tile.
+  !> Gather the element values of a tile that a step may change.
   subroutine gather_values(tile, elements, buffer)
     type(tile_t), intent(in) :: tile
-    type(block_state_t), intent(inout) :: elements !! as before
+    type(block_state_t), intent(inout) :: elements !! unchanged
     type(packed_buffer_t), intent(out) :: buffer
 
     call choose_slots(buffer, [tile%first_chunk, tile%last_chunk], chunk_size, .false., .true.)
@@ -160,17 +160,17 @@ contains
     call elements%visit(buffer)
   end subroutine gather_values
 
-  !> The elements of a tile as they were when their values were taken.
+  !> Restore the element values of a tile from a buffer.
   subroutine restore_values(buffer, elements)
-    type(packed_buffer_t), intent(inout) :: buffer !! may be put back again
+    type(packed_buffer_t), intent(inout) :: buffer !! may be used again
     type(block_state_t), intent(inout) :: elements
 
     call start_unpacking(buffer)
     call elements%visit(buffer)
   end subroutine restore_values
 
-  !> Whether two arrays of one length have the same bits: zeros have signs, and what is not a number
-  !> equals nothing.
+  !> Whether two arrays of equal length have the same bits: zeros have signs, and NaN equals
+  !> nothing.
   pure function same_bits(a, b) result(same)
     real(wp), intent(in) :: a(:), b(:)
     logical :: same

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What the log says about the elements of each part.
+!> Log of the element form of each part.
 module element_log_m
   use element_dispatch_m, only : point_count
   use kinds_m, only : wp
@@ -11,22 +11,24 @@ module element_log_m
   private
   public :: log_elements
 
-  !> Coefficient from which on hourglass control of squares rules their stable step, by form.
+  !> Coefficient of viscous and stiffness hourglass control above which it limits the step of square
+  !> elements.
   real(wp), parameter :: ruling_coefficient = 0.5_wp
-  !> The same of assumed strain, at nu = 0.
+  !> Coefficient of assumed-strain hourglass control above which it limits the step of square
+  !> elements, at nu = 0.
   real(wp), parameter :: ruling_assumed = 3.0_wp
-  !> Hourglass control by its number.
+  !> Names of the hourglass control.
   character(14), parameter :: forms(3) = [character(14) :: 'viscous', 'stiffness', &
     'assumed strain']
 
 contains
 
-  !> Element form of each part and what belongs to it.
+  !> Log element form, hourglass control and bulk viscosity of each part.
   subroutine log_elements(model, log)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
     character(:), allocatable :: text
-    real(wp) :: ruling, share !! of L/c
+    real(wp) :: ruling, share !! coefficient that begins to limit the step; resulting share of L/c
     integer :: i
 
     do i = 1, size(model%parts)
@@ -37,27 +39,28 @@ contains
           cycle
         end if
         if (point_count(model%sections(part%section)) == 1) then
-          text = trim(merge('round, volume weighted one-point quads', &
-            'one-point quads                       ', &
+          text = trim(merge('axisymmetric volume-weighted one-point quads', &
+            'one-point quads                             ', &
             model%is_axisymmetric))//', '//trim(forms(part%hourglass%form))//' hourglass control ' &
             //to_text(part%hourglass%coefficient)
         else
-          text = trim(merge('round fully integrated quads', 'fully integrated quads      ', &
+          text = trim(merge('axisymmetric fully integrated quads', &
+            'fully integrated quads             ',  &
             model%is_axisymmetric))//' (2x2 points), '//trim(merge('mean dilatation           ', &
             'volumetric strain by point', has_mean_dilatation(model%materials(part%material))))
         end if
         call write_log(log, 'part '//to_text(part%id)//': '//text//', bulk viscosity Q1 ' &
           //to_text(part%hourglass%quadratic)//' Q2 '//to_text(part%hourglass%linear))
         if (point_count(model%sections(part%section)) > 1) cycle
-        ! Where hourglass control makes the step of squares smaller than L/c (`hourglass_steps`).
+        ! Hourglass control that makes the step of squares smaller than L/c (`hourglass_steps`).
         ruling = merge(ruling_assumed, ruling_coefficient, part%hourglass%form == hourglass_assumed)
         share = ruling/max(part%hourglass%coefficient, ruling)
         if (part%hourglass%form /= hourglass_viscous) share = sqrt(share)
         if (share < 1.0_wp .and. .not. model%is_axisymmetric) call warn(log, &
           'part '//to_text(part%id) &
-          //': hourglass control of QM '//to_text(part%hourglass%coefficient)//' lowers the ' &
-          //'stable step, that of squares to '//to_text(share)//' of L/c; QM up to ' &
-          //to_text(ruling)//' would not')
+          //': hourglass control with QM '//to_text(part%hourglass%coefficient)//' reduces the ' &
+          //'stable step, for squares to '//to_text(share)//' of L/c; QM up to ' &
+          //to_text(ruling)//' does not')
         if (model%is_axisymmetric .and. part%hourglass%form == hourglass_stiffness &
           .and. history_size(model%materials(part%material)) > 0) call warn(log, 'part ' &
           //to_text(part%id)//': stiffness hourglass control makes axisymmetric bodies too stiff ' &
@@ -67,8 +70,8 @@ contains
     call report_missing_viscosity(model, log)
   end subroutine log_elements
 
-  !> One line where shocks are likely and nothing spreads them over elements: an equation of state
-  !> without bulk viscosity.
+  !> Report an equation of state without bulk viscosity, where shocks are likely and not spread over
+  !> elements.
   subroutine report_missing_viscosity(model, log)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
@@ -81,7 +84,7 @@ contains
         if (part%hourglass%quadratic > 0.0_wp .or. part%hourglass%linear > 0.0_wp) cycle
         call write_log(log, 'bulk viscosity is off in part '//to_text(part%id)//' with an ' &
           //'equation of state (the first such part); *CONTROL_BULK_VISCOSITY with a blank card ' &
-          //'makes it that of LS-DYNA, Q1 1.5 and Q2 0.06')
+          //'sets the defaults of LS-DYNA, Q1 1.5 and Q2 0.06')
         return
       end associate
     end do

@@ -17,14 +17,14 @@ module element_mass_m
 
 contains
 
-  !> Add `factor` times the mass matrix, or that of damping by mass.
+  !> Add `factor` times the mass matrix, or the matrix of mass damping.
   pure subroutine add_mass(model, factor, equation, matrix, rates)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: factor
     integer, intent(in) :: equation(:, :)   !! (2, n_node) equation numbers, 0 = none
     type(sparse_t), intent(inout) :: matrix !! started, not compressed
-    real(wp), intent(in), optional :: rates(:, :) !! (2, n_part + 1) D of each part and of masses on
-                                            !! nodes, 1/s; absent: 1
+    real(wp), intent(in), optional :: rates(:, :) !! (2, n_part + 1) D of each part and of lumped
+                                                  !! masses, 1/s; absent: 1
     real(wp) :: mass(4, 4), weights(2, size(model%parts) + 1)
     integer :: i, k
 
@@ -50,11 +50,12 @@ contains
     end do
   end subroutine add_mass
 
-  !> The mass matrix, or that of damping by mass, times a nodal vector.
+  !> Product of the mass matrix, or the matrix of mass damping, and a nodal vector.
   pure function mass_times(model, vector, rates) result(product)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: vector(:, :) !! (2, n_node)
-    real(wp), intent(in), optional :: rates(:, :) !! as above
+    real(wp), intent(in), optional :: rates(:, :) !! (2, n_part + 1) D of each part and of lumped
+                                                  !! masses, 1/s; absent: 1
     real(wp) :: product(2, size(vector, 2))
     real(wp) :: mass(4, 4), part(2, 4), weights(2, size(model%parts) + 1)
     integer :: i, k
@@ -124,7 +125,7 @@ contains
     mass = model%materials(model%parts(model%mesh%element_part(i))%material)%density*mass
   end function element_mass
 
-  !> Lumped mass of all nodes.
+  !> Lumped masses of all nodes.
   subroutine lump_mass(model, mass)
     type(model_t), intent(in) :: model
     real(wp), allocatable, intent(out) :: mass(:) !! (n_node) kg per metre of depth or per radian
@@ -149,7 +150,7 @@ contains
     end do
   end subroutine lump_mass
 
-  !> Masses at the four nodes of the element in a slot, by its density; 0 at the fourth of a
+  !> Masses at the four nodes of the element in a slot, from its density; 0 at the fourth node of a
   !> triangle.
   pure function element_shares(model, slot) result(shares)
     type(model_t), intent(in) :: model
@@ -159,7 +160,7 @@ contains
     shares = lumped_shares(model, slot_part(model%layout, slot), model%layout%slot_nodes(:, slot))
   end function element_shares
 
-  !> The same of an element of a part between some nodes.
+  !> Masses at the four nodes of an element of a part; 0 at the fourth node of a triangle.
   pure function lumped_shares(model, part, nodes) result(shares)
     type(model_t), intent(in) :: model
     integer, intent(in) :: part, nodes(4)
@@ -181,7 +182,7 @@ contains
   end function lumped_shares
 
   !> Integrals of N_a r over one quad or triangle, per radian: its volume by nodes. 2x2 Gauss points
-  !> are exact. A triangle's third node gets the shares of both its places, its fourth none.
+  !> are exact. A triangle's third node gets the shares of both its positions, its fourth none.
   pure function node_volumes(x, is_triangle) result(volumes)
     real(wp), intent(in) :: x(2, 4) !! corners, x(1, :) the radii
     logical, intent(in) :: is_triangle
@@ -219,7 +220,7 @@ contains
     end do
   end function axisym_mass
 
-  !> Volume of element i at the start, per radian, and its first moments.
+  !> Initial volume of element i, per radian, and its first moments.
   pure function element_volume(mesh, i) result(moments)
     type(mesh_t), intent(in) :: mesh
     integer, intent(in) :: i

@@ -18,18 +18,18 @@ module element_start_m
 
 contains
 
-  !> Allocate the streams and fill the reference shape. Elastic parts get no plastic history, fully
+  !> Allocate the streams and fill the reference shape. Elastic parts have no plastic history, fully
   !> integrated ones no hourglass memory.
   subroutine start_elements(model, known, elements)
     type(model_t), intent(in) :: model
-    integer, intent(in) :: known(:, :) !! (2, n) first and last slot of those that are asked for
+    integer, intent(in) :: known(:, :) !! (2, n) first and last slot of the ranges of this process
     type(block_state_t), intent(out) :: elements
     integer :: n_chunk, k
 
     allocate (elements%reference(model%layout%n_slot, merge(n_axisym_reference, 6, &
       model%is_axisymmetric)))
     allocate (elements%deviator(model%layout%n_slot, 3))
-    ! Chunks of rigid parts come after these.
+    ! Chunks of rigid parts follow.
     n_chunk = model%layout%tiles(size(model%layout%tiles))%last_chunk
     allocate (elements%deviatoric_work(n_chunk), elements%hourglass_work(n_chunk), &
       elements%viscous_work(n_chunk), source=0.0_wp)
@@ -45,7 +45,7 @@ contains
     do k = 1, size(model%parts)
       associate (viscosity => model%parts(k)%hourglass, &
         material => model%materials(model%parts(k)%material))
-        ! An equation of state has the bulk viscosity of the last step in its own memory.
+        ! An equation of state stores the bulk viscosity of the last step itself.
         if ((viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp) .and. &
           .not. (allocated(material%eos) .or. material%is_rigid .or. &
           allocated(elements%viscous_pressure))) &
@@ -63,9 +63,9 @@ contains
     if (model%erodes) call start_erosion(model, elements)
   end subroutine start_elements
 
-  !> Diagonals and h.X of slots; in axisymmetric bodies also the sum of the radii, 1/V and density
-  !> over nodal mass. Padding is the first element of its chunk, much larger: it divides by no zero
-  !> and its stable step never counts.
+  !> Diagonals and h.X of slots; for axisymmetric models also the sum of the radii, 1/V and density
+  !> over nodal mass. Padding is the first element of its chunk, much larger, so that it divides by
+  !> no zero and never limits the step.
   subroutine fill_reference(model, from, to, reference)
     type(model_t), intent(in) :: model
     integer, intent(in) :: from, to            !! slots
@@ -97,7 +97,7 @@ contains
     end do
   end subroutine fill_reference
 
-  !> Where each chunk's points, history, equation of state and hourglass memory start.
+  !> Start of each chunk's points, history, equation of state and hourglass memory.
   subroutine reserve_memories(model, elements)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(inout) :: elements
@@ -121,7 +121,7 @@ contains
       model%layout%n_chunk), source=0)
   end subroutine reserve_memories
 
-  !> What a chunk of a part keeps in each of the four streams.
+  !> Values of a chunk of a part in each of the four streams.
   pure function memory_sizes(model, i_part) result(n)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_part
@@ -143,7 +143,7 @@ contains
     end associate
   end function memory_sizes
 
-  !> The streams of some chunks at time zero.
+  !> Initialise the streams of some chunks.
   subroutine clear_memories(model, first, last, elements)
     type(model_t), intent(in) :: model
     integer, intent(in) :: first, last

@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Elements that leave the mesh, and what the output asks of elements.
+!> Erosion of elements, and element results for output.
 module element_state_m
   use element_dispatch_m, only : point_count
   use kinds_m, only : wp
-  use block_state_m, only : block_state_t, erosion_state_t, stays, has_left, has_gone
+  use block_state_m, only : block_state_t, erosion_state_t, intact, newly_eroded, eroded_before
   use element_chunk_m, only : reference_sum
   use layout_m, only : chunk_size, slot_part
   use material_dispatch_m, only : find_failed, history_size, column_temperature, column_damage, &
@@ -14,13 +14,13 @@ module element_state_m
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
-  public :: start_erosion, settle_erosion, is_gone, stress_of_slot, plastic_strain_of_slot, &
+  public :: start_erosion, update_erosion, is_eroded, stress_of_slot, plastic_strain_of_slot, &
     find_heat, hoop_strain_of_slot, initial_volume, smallest_ratio, add_part_energies, &
     count_points, first_failed
 
 contains
 
-  !> What is known of elements that may leave the mesh.
+  !> Allocate the erosion state.
   subroutine start_erosion(model, elements)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(inout) :: elements
@@ -28,8 +28,8 @@ contains
 
     allocate (elements%erosion)
     associate (erosion => elements%erosion, layout => model%layout)
-      allocate (erosion%status(layout%n_slot), source=stays)
-      allocate (erosion%n_gone(layout%n_chunk), erosion%n_element(model%mesh%n_node), &
+      allocate (erosion%status(layout%n_slot), source=intact)
+      allocate (erosion%n_removed(layout%n_chunk), erosion%n_element(model%mesh%n_node), &
         erosion%n_eroded(size(model%parts)), source=0)
       allocate (erosion%hourglass(layout%n_slot), erosion%internal(layout%n_slot), &
         erosion%impulse(layout%n_slot), source=0.0_wp)
@@ -45,24 +45,24 @@ contains
     end associate
   end subroutine start_erosion
 
-  !> Elements that have left the mesh in this cycle: their energies leave the account, and their
-  !> nodes have one element less. Slot by slot, so that sums do not depend on threads.
-  subroutine settle_erosion(model, time, erosion, freed)
+  !> Count the elements that eroded in this cycle: energies move to the eroded energies, nodes lose
+  !> an element. Slot by slot, so that sums do not depend on threads.
+  subroutine update_erosion(model, time, erosion, freed)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: time
     type(erosion_state_t), intent(inout) :: erosion
-    integer, allocatable, intent(out) :: freed(:) !! nodes that have no element any more; not there
-                                                  !! where no element has left
+    integer, allocatable, intent(out) :: freed(:) !! nodes without an element; not allocated where
+                                                  !! no element eroded
     integer :: slot, k
 
-    if (.not. any(erosion%status == has_left)) return
+    if (.not. any(erosion%status == newly_eroded)) return
     allocate (freed(0))
     if (sum(erosion%n_eroded) == 0) erosion%first_time = time
     do slot = 1, model%layout%n_slot
-      if (erosion%status(slot) /= has_left) cycle
-      erosion%status(slot) = has_gone
-      erosion%took(2) = erosion%took(2) + erosion%internal(slot)
-      erosion%took(3) = erosion%took(3) + erosion%hourglass(slot)
+      if (erosion%status(slot) /= newly_eroded) cycle
+      erosion%status(slot) = eroded_before
+      erosion%removed_energy(2) = erosion%removed_energy(2) + erosion%internal(slot)
+      erosion%removed_energy(3) = erosion%removed_energy(3) + erosion%hourglass(slot)
       associate (part => slot_part(model%layout, slot), nodes => model%layout%slot_nodes(:, slot))
         erosion%n_eroded(part) = erosion%n_eroded(part) + 1
         do k = 1, merge(3, 4, nodes(4) == nodes(3))
@@ -71,19 +71,19 @@ contains
         end do
       end associate
     end do
-  end subroutine settle_erosion
+  end subroutine update_erosion
 
-  !> Whether the element in a slot has left the mesh.
-  pure function is_gone(elements, slot) result(gone)
+  !> Whether the element in a slot has eroded.
+  pure function is_eroded(elements, slot) result(eroded)
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: slot
-    logical :: gone
+    logical :: eroded
 
-    gone = allocated(elements%erosion)
-    if (gone) gone = elements%erosion%status(slot) /= stays
-  end function is_gone
+    eroded = allocated(elements%erosion)
+    if (eroded) eroded = elements%erosion%status(slot) /= intact
+  end function is_eroded
 
-  !> Cauchy stress of the element in a slot: xx yy zz xy, in axisymmetric bodies rr, zz, hoop and
+  !> Cauchy stress of the element in a slot: xx yy zz xy, in axisymmetric models rr, zz, hoop and
   !> rz; the mean over the present volume where an element has several points.
   pure function stress_of_slot(model, motion, elements, slot) result(stress)
     type(model_t), intent(in) :: model
@@ -117,7 +117,7 @@ contains
       plastic_strain = history_of_slot(model, elements, slot, 1)
   end function plastic_strain_of_slot
 
-  !> Temperature and damage of the element in a slot, 0 in parts that keep none.
+  !> Temperature and damage of the element in a slot, 0 in parts without.
   subroutine find_heat(model, elements, slot, temperature, damage)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -133,8 +133,8 @@ contains
     end associate
   end subroutine find_heat
 
-  !> One value of the history of the element in a slot, the mean over the initial volume where it
-  !> has several points.
+  !> One history value of the element in a slot, the mean over the initial volume where it has
+  !> several points.
   function history_of_slot(model, elements, slot, column) result(value)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -157,14 +157,14 @@ contains
     value = sum([(start(k)*elements%history(first + (k - 1)*stride), k = 1, n_point)])/sum(start)
   end function history_of_slot
 
-  !> J - 1 where the volumetric stress of the element in a slot is formed: once for the element, or
-  !> at each of its points, and the initial area (or volume per radian) that each stands for.
+  !> J - 1 at the positions where the volumetric stress of the element in a slot is formed (once per
+  !> element, or at each point), and the initial area or volume per radian of each.
   pure subroutine volume_ratios(model, motion, elements, slot, n, stretch, start)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: slot
-    integer, intent(out) :: n                                !! how many
+    integer, intent(out) :: n                                !! number of positions
     real(wp), intent(out) :: stretch(n_point), start(n_point)
     real(wp) :: u(2, 4), d31(2), d42(2)
 
@@ -181,7 +181,7 @@ contains
       if (n > 1 .or. model%is_axisymmetric) then
         call ratios_of_points(elements, slot, u, stretch, start)
         if (n > 1) return
-        ! 2x2 points integrate the volume of the element without error.
+        ! 2x2 points integrate the volume exactly.
         stretch(1) = sum(start*stretch)/sum(start)
         start(1) = sum(start)
       else
@@ -213,8 +213,8 @@ contains
     end if
   end function initial_volume
 
-  !> Logarithmic hoop strain of the element in a slot: ln of the mean radius, over the initial area,
-  !> that the motion gives, over that of the start.
+  !> Logarithmic hoop strain of the element in a slot: ln of the current over the initial mean
+  !> radius, both means over the initial area.
   pure function hoop_strain_of_slot(model, motion, slot) result(strain)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)     !! (4, n_node)
@@ -262,8 +262,8 @@ contains
     smallest = 1.0_wp + minval(stretch(:n))
   end function smallest_ratio
 
-  !> Energies per part. The volumetric part of the internal energy is a potential and is evaluated
-  !> here; only the work of the deviator is accumulated in the step.
+  !> Add energies of each part. The volumetric part of the internal energy is a potential and is
+  !> evaluated here; the work of the deviator is accumulated in the step.
   subroutine add_part_energies(model, motion, elements, internal, hourglass, viscous)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
@@ -280,7 +280,7 @@ contains
       viscous(part) = viscous(part) + elements%viscous_work(i_chunk)
       do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
         if (model%layout%slot_element(slot) == 0) cycle
-        if (is_gone(elements, slot)) cycle
+        if (is_eroded(elements, slot)) cycle
         call volume_ratios(model, motion, elements, slot, n, stretch, start)
         associate (material => model%materials(model%parts(part)%material))
           if (elements%eos_start(i_chunk) > 0) then
@@ -295,7 +295,7 @@ contains
     end do
   end subroutine add_part_energies
 
-  !> Points that may fail.
+  !> Number of points that may fail.
   pure function count_points(model, elements) result(n)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -312,7 +312,7 @@ contains
     end do
   end function count_points
 
-  !> The first slot with a failed point; there must be one.
+  !> First slot with a failed point; there must be one.
   pure function first_failed(model, elements) result(slot)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements

@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Stable steps of the single elements, by the kernels of the step itself, and the elements that
-!> rule the time step.
+!> Stable steps of single elements, by the kernels of the step itself, and the elements that limit
+!> the time step.
 module element_steps_m
   use kinds_m, only : wp
-  use block_state_m, only : block_state_t, stays
+  use block_state_m, only : block_state_t, intact
   use element_chunk_m, only : element_chunk_t, gather_motion
   use eos_pressure_m, only : finish_limits, present_moduli
   use hourglass_m, only : form_resistance
@@ -20,18 +20,18 @@ module element_steps_m
   public :: chunk_steps, scaled_step, is_damped, find_smallest_steps, own_steps, &
     exposed_step, start_retardation
 
-  !> Gradients of the shape functions and what the step takes of the element besides.
+  !> Gradients of the shape functions and other data of the element for its step.
   type :: gradients_t
     real(wp) :: x(4), y(4)       !! dN/dx, dN/dy, 1/m
     real(wp) :: area             !! m^2
     real(wp) :: growth           !! A/A0, at least 1
-    real(wp) :: rate             !! size of the trace of the velocity gradient, 1/s
+    real(wp) :: rate             !! |trace of the velocity gradient|, 1/s
   end type gradients_t
 
 contains
 
-  !> Steps of the elements of a chunk, of padding too. With an equation of state the stiffest of
-  !> them stands for all.
+  !> Stable steps of the elements of a chunk, padding included. With an equation of state the
+  !> stiffest element determines the moduli.
   subroutine chunk_steps(model, elements, i_chunk, motion, dt, steps)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -57,15 +57,14 @@ contains
     call steps_at_moduli(model, elements, i_chunk, [now], motion, dt, steps)
   end subroutine chunk_steps
 
-  !> Steps of the elements of a chunk at these moduli, with the hourglass control that has a share
-  !> in them.
+  !> Stable steps of the elements of a chunk at given moduli, with hourglass control.
   subroutine steps_at_moduli(model, elements, i_chunk, now, motion, dt, steps)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: i_chunk
     type(moduli_t), intent(in) :: now(:)             !! of each element, or one for all
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
-    real(wp), intent(in) :: dt                       !! step that led here; 0: no rates
+    real(wp), intent(in) :: dt                       !! previous step; 0: no rates
     real(wp), intent(out) :: steps(chunk_size)       !! s
     type(element_chunk_t) :: chunk, shape, point
     type(stress_chunk_t) :: unused
@@ -106,7 +105,7 @@ contains
     end do
   end subroutine steps_at_moduli
 
-  !> The same of a chunk whose shape and points are there.
+  !> Stable steps of the elements of a chunk whose shape and points are set.
   subroutine limit_elements(model, i_chunk, now, elements, chunk, sums, steps)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
@@ -128,7 +127,7 @@ contains
     end associate
   end subroutine limit_elements
 
-  !> Steps of the elements of a chunk, each with the moduli and the mass that it has now.
+  !> Stable steps of the elements of a chunk, each with its present moduli and mass.
   subroutine own_steps(model, elements, i_chunk, motion, steps)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -151,8 +150,8 @@ contains
     end do
   end subroutine own_steps
 
-  !> The `n` elements of the smallest stable steps, or all where there are fewer, rising. They lie
-  !> in the chunks of the `n` smallest limits, which the last forces have left.
+  !> The `n` elements of the smallest stable steps, or all where there are fewer, in rising order.
+  !> They lie in the chunks of the `n` smallest limits of the last forces.
   subroutine find_smallest_steps(model, elements, motion, n, found, steps)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -173,7 +172,7 @@ contains
       do k = 1, model%layout%chunk_elements(i_chunk)
         i_slot = (i_chunk - 1)*chunk_size + k
         if (allocated(elements%erosion)) then
-          if (elements%erosion%status(i_slot) /= stays) cycle
+          if (elements%erosion%status(i_slot) /= intact) cycle
         end if
         place = count(steps <= of_slots(k))
         if (place >= n) cycle
@@ -185,11 +184,11 @@ contains
     steps = steps(:size(found))
   end subroutine find_smallest_steps
 
-  !> Stable step of the element in a slot with its mass.
+  !> Stable step of the element in a slot with its scaled mass.
   pure function scaled_step(model, slot, step, elements) result(scaled)
     type(model_t), intent(in) :: model
     integer, intent(in) :: slot
-    real(wp), intent(in) :: step                 !! with the mass of its density
+    real(wp), intent(in) :: step                 !! with the mass from its density
     type(block_state_t), intent(in) :: elements
     real(wp) :: scaled
 
@@ -203,7 +202,7 @@ contains
     end associate
   end function scaled_step
 
-  !> Whether something resists the rates of a part.
+  !> Whether rates of a part are damped.
   pure function is_damped(model, part) result(damped)
     type(model_t), intent(in) :: model
     type(part_t), intent(in) :: part
@@ -217,13 +216,13 @@ contains
     end associate
   end function is_damped
 
-  !> Stable step, s, of a plane one-point quad in a slot whose nodes carry hardly any mass but their
-  !> own, with the mass of its density; huge where it is not exposed. A node moves as if the rest of
-  !> its mass belonged to mirror images of the element: one component of its acceleration is that of
-  !> the free element, the other one 2 s - 1 of that where s > 1/2 is the element's share in its
-  !> mass, and 0 below. omega^2 = 4 J c^2 lambda, lambda the largest eigenvalue of D B Q B^T over K
-  !> + 4G/3 with these weights Q, and J = A/A0. Of a free element, and of four in a block, this is
-  !> exact (doc/theory/elements.md, "Stable step").
+  !> Stable step, s, of a plane one-point quad in a slot whose nodes carry hardly any mass of other
+  !> elements, with the mass from its density; huge where it is not exposed. A node moves as if the
+  !> rest of its mass belonged to mirror images of the element: one component of its acceleration is
+  !> that of the free element, the other one 2 s - 1 of that where s > 1/2 is the element's share in
+  !> its mass, and 0 below. omega^2 = 4 J c^2 lambda, lambda the largest eigenvalue of D B Q B^T
+  !> over K + 4G/3 with these weights Q, and J = A/A0. Exact for a free element and for four in a
+  !> block (doc/theory/elements.md, "Stable step").
   function exposed_step(model, elements, slot, motion) result(step)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -242,7 +241,7 @@ contains
       now = present_moduli(model%materials(part%material), elements, slot)
       shape = elements%reference(slot, :6)
       nodal = motion(:, model%layout%slot_nodes(:, slot))
-      ! Mirror images lie beyond the side where the least of the mass is its own.
+      ! Mirror images lie beyond the side with the smallest own share of the mass.
       call form_gradients(shape, nodal, minloc(shares + cshift(shares, 1), 1), gradients, normal)
       associate (x => normal(1)*gradients%x + normal(2)*gradients%y)
         gradients%y = normal(1)*gradients%y - normal(2)*gradients%x
@@ -285,10 +284,9 @@ contains
     normal = [along(2), -along(1)]/max(norm2(along), tiny(1.0_wp))
   end subroutine form_gradients
 
-  !> Stable step of the motions in which the nodes have these weights in the first and in the second
-  !> direction: of dt^2 omega^2/4 + dt rate/2 <= 1, with the rate of bulk viscosity, whose pressure
-  !> is that of v(n-1/2). It counts in expansion too: two steps later such an element is in
-  !> compression.
+  !> Stable step of motions with the given nodal weights in both directions: dt^2 omega^2/4 + dt
+  !> rate/2 <= 1, with the rate of bulk viscosity, whose pressure is that of v(n-1/2). It counts in
+  !> expansion too: two steps later such an element is in compression.
   pure function mode_step(now, viscosity, gradients, weights_x, weights_y) result(step)
     type(moduli_t), intent(in) :: now
     type(hourglass_t), intent(in) :: viscosity         !! its Q1 and Q2
@@ -318,8 +316,8 @@ contains
     step = 2.0_wp/max(rate + sqrt(rate**2 + omega**2), tiny(1.0_wp)) ! no motion, no limit
   end function mode_step
 
-  !> Largest eigenvalue of the product of a diagonal and a symmetric matrix, both without negative
-  !> eigenvalues, by the roots of the cubic in trigonometric form.
+  !> Largest eigenvalue of the product of a diagonal and a symmetric matrix, both positive
+  !> semidefinite, by the roots of the cubic in trigonometric form.
   pure function largest_eigenvalue(scale, diagonal, off) result(largest)
     real(wp), intent(in) :: scale(3)     !! diagonal matrix
     real(wp), intent(in) :: diagonal(3)  !! 11, 22, 33 of the other
@@ -341,7 +339,7 @@ contains
   end function largest_eigenvalue
 
   !> Retardation times at time zero: a share of critical damping of the fastest mode of the element,
-  !> of omega = 2/step, is that share times the step.
+  !> omega = 2/step, is that share times the step.
   subroutine start_retardation(model, motion, elements)
     type(model_t), intent(in) :: model
     real(wp), intent(in), contiguous :: motion(:, :)  !! (4, n_node)

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Derivative of the internal force of all elements, for implicit solutions, and in dual numbers the
-!> force of a one-point quad with hourglass control by assumed strain, as `element_tangent` has that
-!> of several points.
+!> Derivative of the internal force of all elements, for implicit solutions, and the force of a
+!> one-point quad with assumed-strain hourglass control in dual numbers (fully integrated quads:
+!> `element_tangent`).
 module element_stiffness_m
   use block_state_m, only : block_state_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
@@ -20,8 +20,8 @@ module element_stiffness_m
   private
   public :: add_stiffness
 
-  !> The patterns a = d31, b = d42 and h in x and y, and s (`element_tangent`), of the unknowns
-  !> x1 y1 x2 y2 ...
+  !> Patterns a = d31, b = d42 and h in x and y, and s (`element_tangent`), of the unknowns x1 y1 x2
+  !> y2 ...
   real(wp), parameter :: of_nodes(n_pattern, 8) = real(reshape([ &
     -1, 0, 0, 0, 1, 0, 1, 0, -1, 0, 0, 0, 1, 0, 0, 0, -1, 0, -1, 0, 1, 0, 0, 0, -1, 0, -1, 0, &
     1, 0, 0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 1, 0, 0, 0, 1, 0, -1, 0], &
@@ -36,8 +36,8 @@ module element_stiffness_m
 contains
 
   !> Add the exact derivative of the internal force with respect to the displacement. The step `dt`
-  !> goes from the committed state to `motion`, with velocity (u - u_committed)/dt. Parts of
-  !> one-point elements must have hourglass control by assumed strain.
+  !> goes from the committed state to `motion`, with velocity (u - u_committed)/dt. One-point parts
+  !> must have assumed-strain hourglass control.
   pure subroutine add_stiffness(model, motion, dt, committed, equation, matrix)
     type(model_t), intent(in) :: model
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
@@ -75,7 +75,7 @@ contains
     end do
   end subroutine add_stiffness
 
-  !> State of the points of one element out of the streams, and its hourglass stress.
+  !> Load the state of the points of one element, and its hourglass stress, from the streams.
   pure subroutine load_points(i_chunk, place, n_history, elements, element)
     integer, intent(in) :: i_chunk
     integer, intent(in) :: place     !! in the chunk, from 0
@@ -218,7 +218,7 @@ contains
     end associate
   end subroutine form_integrals
 
-  !> Hourglass force q_x, q_y per unit of depth (`resist_by_assumed_strain`).
+  !> Hourglass force q_x, q_y per unit of depth (`hourglass_assumed_strain`).
   pure subroutine find_resistance(material, hourglass, element, gamma, cosine, q)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass

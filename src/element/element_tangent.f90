@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Internal force of one element, plane or round, in dual numbers: the equations of the kernels once
-!> more, for every form of element and law. The variables are the patterns of the nodes: a = d31,
-!> b = d42, h in x and y and s, the sum of the radii; a point of several is the parallelogram of its
+!> Internal force of one element, plane or axisymmetric, in dual numbers: the equations of the
+!> kernels for every element form and law. The variables are the patterns of the nodes: a = d31, b =
+!> d42, h in x and y, and s, the sum of the radii; an integration point is the parallelogram of its
 !> own diagonals at its own radius.
 module element_tangent_m
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
@@ -17,10 +17,10 @@ module element_tangent_m
   public :: element_t, shape_t, n_pattern, new_element, set_pattern_values, form_full_force, &
     form_gradient, find_stress, pressure_of, start_volumes, twice_area, products, cross
 
-  !> Patterns: a and b and h in x and y, and s.
+  !> Patterns: a, b and h in x and y, and s.
   integer, parameter :: n_pattern = 7
 
-  !> A shape, or the change of one; s of a point is its radius.
+  !> A shape, or its increment; s of a point is its radius.
   type :: shape_t
     type(dual_t) :: a(2), b(2), h(2), s
   end type shape_t
@@ -37,7 +37,7 @@ module element_tangent_m
 
 contains
 
-  !> An element whose shapes have the slopes of the patterns, and no values yet.
+  !> An element whose shapes have the slopes of the patterns, and no values.
   pure function new_element(is_axisymmetric) result(element)
     logical, intent(in) :: is_axisymmetric
     type(element_t) :: element
@@ -56,7 +56,7 @@ contains
     end associate
   end function new_element
 
-  !> Values of a nodal field in the patterns.
+  !> Set the values of a nodal field in the patterns.
   pure subroutine set_pattern_values(field, shape)
     real(wp), intent(in) :: field(2, 4)
     type(shape_t), intent(inout) :: shape
@@ -67,7 +67,7 @@ contains
     shape%s%value = sum(field(1, :))
   end subroutine set_pattern_values
 
-  !> Diagonals of point `k`, and its radius where one is asked for.
+  !> Diagonals of point `k`, and its radius in axisymmetric models.
   pure subroutine form_place(k, is_axisymmetric, shape, place)
     integer, intent(in) :: k
     logical, intent(in) :: is_axisymmetric
@@ -163,7 +163,7 @@ contains
     if (element%is_axisymmetric) start = start*matmul(element%x(1, :), shape_at_points)
   end function start_volumes
 
-  !> Cauchy stress xx yy xy and zz (hoop) of a point of several.
+  !> Cauchy stress xx yy xy and zz (hoop) of an integration point.
   pure subroutine find_point_stress(material, k, place, element, pressure, stress)
     type(material_t), intent(in) :: material
     integer, intent(in) :: k
@@ -189,8 +189,8 @@ contains
     call find_stress(material, gradient, hoop, pressure, element%points(k), stress, cosine)
   end subroutine find_point_stress
 
-  !> Add the forces sigma B of a point, a quarter of the area and the radius its weight, and that of
-  !> the hoop stress.
+  !> Add the forces sigma B of a point, with a quarter of the area and the radius as weight, and the
+  !> force of the hoop stress.
   pure subroutine add_point_force(k, is_axisymmetric, place, stress, force)
     integer, intent(in) :: k
     logical, intent(in) :: is_axisymmetric
@@ -225,7 +225,7 @@ contains
   end subroutine add_point_force
 
   !> Gradient G of the step in its mid-step shape, of a parallelogram or at the centre. With D the
-  !> change of the displacement by the gradients of that shape, dG = (1 - G/2) D.
+  !> increment of the displacement gradient in that shape, dG = (1 - G/2) D.
   pure subroutine form_gradient(now, change_a, change_b, gradient)
     type(shape_t), intent(in) :: now
     real(wp), intent(in) :: change_a(2), change_b(2)
@@ -273,8 +273,8 @@ contains
     point%cos2 = cosine%value**2 - sine**2
     point%sin2 = 2.0_wp*cosine%value*sine
     call form_tangent(material, point)
-    ! Of strain and angle, twice atan(tan_half), with xx yx xy yy of the gradient and the hoop
-    ! strain.
+    ! Derivatives of strain and angle 2 atan(tan_half) with respect to xx yx xy yy of the gradient
+    ! and the hoop strain.
     rates(4, :) = 0.5_wp/(1.0_wp + tan_half**2)*[0.0_wp, 1.0_wp, -1.0_wp, 0.0_wp, 0.0_wp]
     rates(1, :) = [0.5_wp, 0.0_wp, 0.0_wp, 0.5_wp, -1.0_wp]
     rates(2, :) = 0.5_wp*[cosine%value, -sine, -sine, -cosine%value, 0.0_wp] &
@@ -306,7 +306,7 @@ contains
     pressure%slope = bulk/volume%value*volume%slope
   end function pressure_of
 
-  !> Cauchy stress of the points of rubber, derivative of its energy, the sum of w_k W(F_k): w_k the
+  !> Cauchy stress of the points of rubber, the derivative of the energy sum of w_k W(F_k): w_k the
   !> initial volume of a point and F_k its F scaled to the dilatation of the element.
   pure subroutine find_rubber_stress(rubber, element, start, volumes, volume, stress)
     type(rubber_t), intent(in) :: rubber
@@ -321,7 +321,7 @@ contains
     moved = element%now
     call set_pattern_values(element%u, moved)
     theta = (1.0_wp/sum(start))*volume
-    ! J U'(J), the same for all of them.
+    ! J U'(J), common to all points.
     if (rubber%exponent > 0.0_wp) then
       mean = (-2.0_wp*rubber%a)*power(theta, -rubber%exponent)
     else

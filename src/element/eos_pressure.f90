@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Pressure of materials that have more than K ln J, of one chunk: of an equation of state, or of
-!> the law itself, of rubber or of crushable foam. Energy, pressure and volume are kept once for
-!> each element; all its points share one pressure and one dilatation, and the pressure of a law is
-!> the mean of theirs over the initial volume.
+!> Pressure of one chunk for materials beyond K ln J: from an equation of state, or from the law
+!> itself (rubber, crushable foam). Energy, pressure and volume are stored once per element; all its
+!> points share one pressure and one dilatation, and the pressure of a law is the mean over the
+!> initial volume.
 module eos_pressure_m
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t
@@ -20,20 +20,21 @@ module eos_pressure_m
   private
   public :: n_eos_value, n_law_value, load_point_state, start_point_values, add_point_values, &
     add_law_values, form_shared_pressure, present_moduli, finish_limits, &
-    look_for_failed
+    find_failed_elements
 
-  !> Values of each element: energy, pressure, V/V0 - 1, bulk viscosity, speed of sound squared.
+  !> Values of each element with an equation of state: energy, pressure, V/V0 - 1, bulk viscosity,
+  !> speed of sound squared.
   integer, parameter :: n_eos_value = 5
-  !> The speed of sound is never told below this share of that of the undeformed body.
+  !> Lower bound of the speed of sound, as a share of that of the undeformed material.
   real(wp), parameter :: least_share = 1.0e-3_wp
-  !> The same of a law: energy, pressure, V/V0 - 1, bulk viscosity, bulk and shear modulus.
+  !> Values of each element with a law that gives the pressure: energy, pressure, V/V0 - 1, bulk
+  !> viscosity, bulk and shear modulus.
   integer, parameter :: n_law_value = 6
 
 contains
 
-  !> What a law must know of a point of a material whose pressure has a memory or comes from the
-  !> law: with an equation of state the mean stress at the start of the step and the
-  !> volume in its middle, else F and both volumes.
+  !> Set the data of a point for a law: with an equation of state the mean stress at the start of
+  !> the step and the volume in its middle, else F and the volumes at both ends.
   pure subroutine load_point_state(i_chunk, material, ratio, chunk, point, elements, stress)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
@@ -56,7 +57,7 @@ contains
     call form_gradient(point, stress)
   end subroutine load_point_state
 
-  !> No point has been summed yet.
+  !> Initialise the sums over the points.
   pure subroutine start_point_values(material, chunk)
     type(material_t), intent(in) :: material
     type(element_chunk_t), intent(inout) :: chunk
@@ -69,12 +70,12 @@ contains
     chunk%law_shear = 0.0_wp
   end subroutine start_point_values
 
-  !> What the law has left for one of several points. F of rubber is scaled to the dilatation of the
-  !> element: what that adds to the second derivative of the energy is at most |s| L:L beside a
-  !> lambda not below two thirds of the mean stress (doc/theory/elements.md).
+  !> Add the results of the law for one of several points. F of rubber is scaled to the dilatation
+  !> of the element: this adds at most |s| L:L to the second derivative of the energy, beside a
+  !> lambda of at least two thirds of the mean stress (doc/theory/elements.md).
   pure subroutine add_point_values(material, point, stress, chunk)
     type(material_t), intent(in) :: material
-    type(element_chunk_t), intent(in) :: point !! its volumes are those that it stands for
+    type(element_chunk_t), intent(in) :: point !! with its own volumes
     type(stress_chunk_t), intent(inout) :: stress
     type(element_chunk_t), intent(inout) :: chunk
     real(wp) :: lame
@@ -94,7 +95,7 @@ contains
     call add_law_values(material, point%volume/(1.0_wp + point%stretch), stress, chunk)
   end subroutine add_point_values
 
-  !> What the law has left, for its share of the initial volume.
+  !> Add the results of the law, weighted with the initial volume.
   pure subroutine add_law_values(material, start, stress, chunk)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: start(chunk_size) !! initial volume of the point
@@ -107,7 +108,7 @@ contains
     chunk%law_shear = max(chunk%law_shear, stress%shear)
   end subroutine add_law_values
 
-  !> Pressure and energy that the points of an element share, once all of them have been summed.
+  !> Pressure and energy shared by the points of an element, from the sums over them.
   pure subroutine form_shared_pressure(i_chunk, material, viscosity, inverse_start, elements, &
     chunk, now)
     integer, intent(in) :: i_chunk
@@ -116,7 +117,7 @@ contains
     real(wp), intent(in) :: inverse_start(chunk_size) !! 1/V0
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk     !! pressure out (tension positive)
-    type(moduli_t), intent(inout) :: now              !! those of the stiffest element out
+    type(moduli_t), intent(inout) :: now              !! moduli of the stiffest element out
     logical :: failed(chunk_size), keeps_pressure
     integer :: first
 
@@ -125,14 +126,14 @@ contains
       call form_law_pressure(material, viscosity, inverse_start, elements%eos_state(first), &
         elements%viscous_work(i_chunk), chunk, now)
     else
-      call look_for_failed(i_chunk, material, elements, failed, keeps_pressure)
+      call find_failed_elements(i_chunk, material, elements, failed, keeps_pressure)
       call form_eos_pressure(material, viscosity, inverse_start, failed, keeps_pressure, &
         elements%eos_state(first), chunk, now)
-      call look_for_spall(i_chunk, material, elements)
+      call apply_spall(i_chunk, material, elements)
     end if
   end subroutine form_shared_pressure
 
-  !> Pressure and energy at the end of the step, bulk viscosity apart from the energy.
+  !> Pressure and energy at the end of the step, with bulk viscosity separate from the energy.
   pure subroutine form_law_pressure(material, viscosity, inverse_start, values, viscous_work, &
     chunk, now)
     type(material_t), intent(in) :: material
@@ -149,7 +150,7 @@ contains
     speed_squared = (max(material%bulk, values(:, 5)) + 4.0_wp*max(material%shear, values(:, 6)) &
       /3.0_wp)*(1.0_wp + chunk%stretch)/material%density
     call form_viscous_pressure(viscosity, material%density, speed_squared, chunk, q)
-    ! The forces of viscosity are those of the two ends of the step; what they do is no strain.
+    ! Viscous forces act at both ends of the step; their work is not strain energy.
     viscous_work = viscous_work - sum(0.5_wp*growth*(q + values(:, 4))/inverse_start)
     if (allocated(material%rubber)) then
       values(:, 1) = chunk%law_energy*inverse_start
@@ -167,8 +168,8 @@ contains
       maxval(chunk%stretch))
   end subroutine form_law_pressure
 
-  !> Present moduli; never softer than at the start, which hourglass control and the linear
-  !> viscosity count with.
+  !> Present moduli, at least those of the undeformed material, which hourglass control and linear
+  !> viscosity use.
   pure function moduli_by_law(material, bulk, shear, stretch) result(now)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: bulk, shear, stretch
@@ -180,8 +181,8 @@ contains
       /material%density)
   end function moduli_by_law
 
-  !> Energy and pressure at the end of the step, bulk viscosity included, whose work heats; points
-  !> that have failed have none.
+  !> Energy and pressure at the end of the step, with bulk viscosity, whose work heats; failed
+  !> points have none.
   pure subroutine form_eos_pressure(material, viscosity, inverse_start, failed, keeps_pressure, &
     values, chunk, now)
     type(material_t), intent(in) :: material
@@ -208,7 +209,7 @@ contains
         q = 0.0_wp
       end where
     end if
-    ! The work of the forces of viscosity, which are those of the two ends of the step.
+    ! Work of the viscous forces, which act at both ends of the step.
     heat = chunk%heat*inverse_start - 0.5_wp*growth*(q + values(:, 4))
     call advance_energy(state, growth, heat, least, most, values(:, 1), values(:, 2))
     call find_stiffness(state, chunk%stretch, values(:, 1), values(:, 2), stiffness)
@@ -220,7 +221,7 @@ contains
       /material%density
   end subroutine form_eos_pressure
 
-  !> Bulk viscosity (see `add_bulk_viscosity`) with the speed of sound that each element had before.
+  !> Bulk viscosity (see `add_bulk_viscosity`) with the previous speed of sound of each element.
   pure subroutine form_viscous_pressure(viscosity, initial_density, speed_squared, chunk, q)
     type(hourglass_t), intent(in) :: viscosity
     real(wp), intent(in) :: initial_density
@@ -242,8 +243,8 @@ contains
     end do
   end subroutine form_viscous_pressure
 
-  !> Elements all of whose points have failed; how many points have is kept.
-  pure subroutine look_for_failed(i_chunk, material, elements, failed, keeps_pressure)
+  !> Elements with all points failed; updates the number of failed points.
+  pure subroutine find_failed_elements(i_chunk, material, elements, failed, keeps_pressure)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
     type(block_state_t), intent(inout) :: elements
@@ -263,10 +264,10 @@ contains
       n_failed = n_failed + count(one)
     end do
     elements%n_failed(i_chunk) = n_failed
-  end subroutine look_for_failed
+  end subroutine find_failed_elements
 
-  !> Elements that break by tension: all their points, from the next step on.
-  pure subroutine look_for_spall(i_chunk, material, elements)
+  !> Fail all points of elements that spall, from the next step on.
+  pure subroutine apply_spall(i_chunk, material, elements)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
     type(block_state_t), intent(inout) :: elements
@@ -293,7 +294,7 @@ contains
         where (broken) damage = max(1.0_wp, damage)
       end associate
     end do
-  end subroutine look_for_spall
+  end subroutine apply_spall
 
   !> Moduli of the stiffest of some elements.
   pure function moduli_by_eos(material, stiffness, ratio) result(now)
@@ -306,7 +307,7 @@ contains
       /material%density), least_share*material%sound_speed), .true.)
   end function moduli_by_eos
 
-  !> Moduli that the element in a slot has now.
+  !> Present moduli of the element in a slot.
   pure function present_moduli(material, elements, i_slot) result(now)
     type(material_t), intent(in) :: material
     type(block_state_t), intent(in) :: elements
@@ -332,8 +333,8 @@ contains
     end if
   end function present_moduli
 
-  !> Limits of a chunk whose pressure has a memory: the step that a viscous fluid allows, and no
-  !> volume where the pressure of some element has no bound.
+  !> Complete the limits of a chunk with an equation of state or law pressure: the step of a viscous
+  !> fluid, and no volume where the pressure is unbounded.
   pure subroutine finish_limits(material, now, stretch, step, volume)
     type(material_t), intent(in) :: material
     type(moduli_t), intent(in) :: now

@@ -1,12 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> Element forces of tiles some elements of which may leave the mesh. An element that has left stays
-!> in its slot as padding does: much larger, all of its nodes one, without stress and without force.
+!> Element forces of tiles with erosion. An eroded element stays in its slot as padding: much
+!> larger, all of its nodes equal, without stress or force.
 module eroding_tiles_m
-  use block_state_m, only : block_state_t, stays, has_left
+  use block_state_m, only : block_state_t, intact, newly_eroded
   use element_chunk_m, only : element_chunk_t, reference_inverse, reference_sum, &
     scatter_forces
   use element_state_m, only : smallest_ratio, initial_volume
-  use eos_pressure_m, only : look_for_failed
+  use eos_pressure_m, only : find_failed_elements
   use kinds_m, only : wp
   use layout_m, only : chunk_size, tile_t
   use material_dispatch_m, only : history_size
@@ -19,25 +19,26 @@ module eroding_tiles_m
   private
   public :: add_eroding_tile_forces, advance_eroding_chunk
 
-  !> How much larger the shape of an element is that has left.
+  !> Scale factor of the reference shape of an eroded element.
   real(wp), parameter :: much = 1.0e6_wp
 
-  !> Elements of a chunk that leave in this step, and what all of them held before it.
-  type :: leaving_t
+  !> Elements of a chunk that erode in this step, and values of all elements before it.
+  type :: eroding_t
     logical :: flags(chunk_size) = .false.
     real(wp) :: energy(chunk_size)    !! internal, per initial volume
     real(wp) :: hourglass(chunk_size) !! J/m
     real(wp) :: work                  !! of the hourglass forces of the chunk, J/m
-  end type leaving_t
+  end type eroding_t
 
 contains
 
-  !> As `add_tile_forces`; elements that leave in this step have no force any more.
+  !> Advance all elements of one tile as `add_tile_forces`, with erosion; elements that erode in
+  !> this step have no force.
   subroutine add_eroding_tile_forces(model, tile, motion, times, elements, force)
     type(model_t), intent(in) :: model
     type(tile_t), intent(in) :: tile
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node)
-    real(wp), intent(in) :: times(2)                   !! of the motion, and the step that led there
+    real(wp), intent(in) :: times(2)                   !! time of the motion, and the step before it
     type(block_state_t), intent(inout) :: elements     !! only this tile's slots are touched
     real(wp), intent(inout) :: force(2, model%layout%n_local) !! set here
     type(element_chunk_t) :: chunk
@@ -51,22 +52,22 @@ contains
     end do
   end subroutine add_eroding_tile_forces
 
-  !> As `advance_chunk`, where elements may leave in the step.
+  !> Advance one chunk as `advance_chunk`, with erosion.
   subroutine advance_eroding_chunk(model, i_chunk, motion, times, elements, chunk)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node)
-    real(wp), intent(in) :: times(2)                   !! of the motion, and the step that led there
+    real(wp), intent(in) :: times(2)                   !! time of the motion, and the step before it
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk      !! forces out
-    type(leaving_t) :: leaving
+    type(eroding_t) :: leaving
     integer :: nodes(4, chunk_size), first, i
 
     first = (i_chunk - 1)*chunk_size + 1
-    ! Those of an element that has left are all its first one.
+    ! All nodes of an eroded element are its first one.
     nodes = model%layout%slot_nodes(:, first:first + chunk_size - 1)
     do i = 1, chunk_size
-      if (elements%erosion%status(first + i - 1) /= stays) nodes(:, i) = nodes(1, i)
+      if (elements%erosion%status(first + i - 1) /= intact) nodes(:, i) = nodes(1, i)
     end do
     leaving%energy = 0.0_wp
     associate (i_eos => elements%eos_start(i_chunk))
@@ -76,13 +77,13 @@ contains
     leaving%work = elements%hourglass_work(i_chunk)
     call advance_chunk(model, i_chunk, nodes, motion, times(2), elements, chunk)
     if (times(2) > 0.0_wp) then
-      call find_leaving(model, i_chunk, nodes, motion, times, elements, leaving%flags)
+      call find_eroding(model, i_chunk, nodes, motion, times, elements, leaving%flags)
       if (any(leaving%flags)) call erode_elements(model, i_chunk, motion, times(2), leaving, &
         elements, chunk)
     end if
-    if (elements%erosion%n_gone(i_chunk) == 0) return
+    if (elements%erosion%n_removed(i_chunk) == 0) return
     do i = 1, chunk_size
-      if (elements%erosion%status(first + i - 1) == stays) cycle
+      if (elements%erosion%status(first + i - 1) == intact) cycle
       chunk%force3(:, i) = 0.0_wp
       chunk%force4(:, i) = 0.0_wp
       chunk%swing(:, i) = 0.0_wp
@@ -90,13 +91,13 @@ contains
     end do
   end subroutine advance_eroding_chunk
 
-  !> Elements that leave take their energies along; the limits of the chunk are those of the rest.
+  !> Erode elements: store their energies and set the limits of the chunk to those of the others.
   subroutine erode_elements(model, i_chunk, motion, dt, leaving, elements, chunk)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
     real(wp), intent(in), contiguous :: motion(:, :)
     real(wp), intent(in) :: dt
-    type(leaving_t), intent(in) :: leaving
+    type(eroding_t), intent(in) :: leaving
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(in) :: chunk
     real(wp) :: steps(chunk_size), limit, volume, share, v(2, 4)
@@ -109,7 +110,7 @@ contains
     i_eos = elements%eos_start(i_chunk)
     do i = 1, model%layout%chunk_elements(i_chunk)
       slot = (i_chunk - 1)*chunk_size + i
-      if (elements%erosion%status(slot) /= stays) cycle
+      if (elements%erosion%status(slot) /= intact) cycle
       if (.not. leaving%flags(i)) then
         elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) &
           + (elements%erosion%hourglass(slot) - leaving%hourglass(i))
@@ -117,7 +118,7 @@ contains
         volume = min(volume, smallest_ratio(model, motion, elements, slot))
         cycle
       end if
-      ! Its force at the end of the step does no work any more: half of that of the step is undone.
+      ! The force at the end of the step does no work: take back half of the work of the step.
       v = motion(3:4, model%layout%slot_nodes(:, slot))
       share = dot_product(chunk%force3(:, i), v(:, 3) - v(:, 1)) + dot_product(chunk%force4(:, i), &
         v(:, 4) - v(:, 2)) + dot_product(chunk%swing(:, i), v(:, 1) - v(:, 2) + v(:, 3) - v(:, 4))
@@ -132,15 +133,15 @@ contains
         elements%erosion%internal(slot) = leaving%energy(i)*initial_volume(model, elements, slot)
       end if
       elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) - leaving%hourglass(i)
-      elements%erosion%status(slot) = has_left
-      elements%erosion%n_gone(i_chunk) = elements%erosion%n_gone(i_chunk) + 1
+      elements%erosion%status(slot) = newly_eroded
+      elements%erosion%n_removed(i_chunk) = elements%erosion%n_removed(i_chunk) + 1
       call make_padding(model, i_chunk, i, elements)
     end do
     elements%time_limit(i_chunk) = limit
     elements%volume_limit(i_chunk) = volume
   end subroutine erode_elements
 
-  !> From now on the slot is padding.
+  !> Turn an element slot into padding.
   pure subroutine make_padding(model, i_chunk, i, elements)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk, i
@@ -158,7 +159,7 @@ contains
       do k = 0, merge(3*n, 0, n > 1) - 1
         elements%point_deviator(elements%point_start(i_chunk) + k*chunk_size + i - 1) = 0.0_wp
       end do
-      ! Plastic strain, temperature and damage are told on as they were; back stress would pull.
+      ! Plastic strain, temperature and damage stay for output; back stress would give a force.
       n = merge(n, 0, elements%history_start(i_chunk) > 0)*history_size(material)
       do k = 0, n - 1
         associate (value => elements%history(elements%history_start(i_chunk) + k*chunk_size + i &
@@ -176,14 +177,13 @@ contains
     end associate
   end subroutine make_padding
 
-  !> Elements that leave, by the state at the end of the step. `nodes` are those of the chunk, all
-  !> one where an element has gone.
-  subroutine find_leaving(model, i_chunk, nodes, motion, times, elements, leaves)
+  !> Elements that erode, by the state at the end of the step.
+  subroutine find_eroding(model, i_chunk, nodes, motion, times, elements, leaves)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
     integer, intent(in) :: nodes(4, chunk_size)
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
-    real(wp), intent(in) :: times(2)                 !! of the state, and the step that led there
+    real(wp), intent(in) :: times(2)                 !! time of the state, and the step before it
     type(block_state_t), intent(inout) :: elements   !! impulses
     logical, intent(out) :: leaves(chunk_size)
     logical :: keeps_pressure
@@ -193,17 +193,17 @@ contains
     first = (i_chunk - 1)*chunk_size + 1
     associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
       if (.not. allocated(material%erosion)) return
-      if (material%erosion%by_law) call look_for_failed(i_chunk, material, elements, leaves, &
+      if (material%erosion%by_law) call find_failed_elements(i_chunk, material, elements, leaves, &
         keeps_pressure)
       if (material%erosion%n_given > 0) call find_by_criteria(material, i_chunk, nodes, motion, &
         times, elements, leaves)
       call find_by_step(model, material%erosion, i_chunk, motion, elements, leaves)
     end associate
     leaves = leaves .and. model%layout%slot_element(first:first + chunk_size - 1) > 0 &
-      .and. elements%erosion%status(first:first + chunk_size - 1) == stays
-  end subroutine find_leaving
+      .and. elements%erosion%status(first:first + chunk_size - 1) == intact
+  end subroutine find_eroding
 
-  !> By the criteria of the card: as many as asked for, at as many points.
+  !> Elements that meet enough criteria of the card at enough points.
   subroutine find_by_criteria(material, i_chunk, nodes, motion, times, elements, leaves)
     type(material_t), intent(in) :: material
     integer, intent(in) :: i_chunk
@@ -233,7 +233,7 @@ contains
         call form_stresses(i_chunk, 0, pressure, elements, principal, mises)
         first = (i_chunk - 1)*chunk_size + 1
         associate (impulse => elements%erosion%impulse(first:first + chunk_size - 1))
-          ! Of the square of what the largest principal stress has above its threshold.
+          ! Integral of the squared excess of the largest principal stress over its threshold.
           impulse = impulse + times(2)*max(0.0_wp, principal - erosion%threshold)**2
           common = common + merge(1, 0, impulse >= erosion%impulse)
         end associate
@@ -278,7 +278,7 @@ contains
     mises = sqrt(3.0_wp*(xx**2 + yy**2 + xx*yy + xy**2))
   end subroutine form_stresses
 
-  !> Logarithmic principal strains at the centre, where the diagonals give the deformation.
+  !> Count the strain criteria that are met, from logarithmic principal strains at the centre.
   pure subroutine count_strains(erosion, i_chunk, nodes, motion, elements, met)
     type(erosion_t), intent(in) :: erosion
     integer, intent(in) :: i_chunk
@@ -313,8 +313,8 @@ contains
     end do
   end subroutine count_strains
 
-  !> Elements whose own stable step, or volume, has become too small. The limit of a chunk is that
-  !> of its shortest element with the fastest waves of any: it may lie below all of theirs.
+  !> Elements whose stable step or volume is too small. The limit of a chunk combines its shortest
+  !> element and its fastest waves, so it may lie below the limits of all its elements.
   subroutine find_by_step(model, erosion, i_chunk, motion, elements, leaves)
     type(model_t), intent(in) :: model
     type(erosion_t), intent(in) :: erosion
@@ -334,7 +334,7 @@ contains
     limit = huge(1.0_wp)
     do i = 1, chunk_size
       slot = (i_chunk - 1)*chunk_size + i
-      if (model%layout%slot_element(slot) == 0 .or. elements%erosion%status(slot) /= stays) cycle
+      if (model%layout%slot_element(slot) == 0 .or. elements%erosion%status(slot) /= intact) cycle
       if (inverts) leaves(i) = leaves(i) .or. &
         .not. elements%eos_state(elements%eos_start(i_chunk) + 2*chunk_size + i - 1) > -1.0_wp
       if (leaves(i)) cycle

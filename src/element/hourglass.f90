@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Hourglass control of the one-point quad, plane and round, from the hourglass velocity gamma.v:
-!> viscous or by stiffness (Flanagan & Belytschko 1981), or by assumed strain.
+!> Hourglass control of the one-point quad, plane and axisymmetric, from the hourglass velocity
+!> gamma.v: viscous or by stiffness (Flanagan & Belytschko 1981), or by assumed strain (Belytschko &
+!> Bindeman 1991).
 module hourglass_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
@@ -11,13 +12,13 @@ module hourglass_m
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: resist, form_resistance, resist_viscously, resist_elastically, &
-    resist_by_assumed_strain, form_moduli, largest_spread
+  public :: apply_hourglass_control, form_resistance, hourglass_viscous_force, &
+    hourglass_stiffness_force, hourglass_assumed_strain, form_moduli, largest_spread
 
 contains
 
-  !> Hourglass control of one chunk, with its work.
-  pure subroutine resist(i_chunk, material, hourglass, stress, elements, chunk)
+  !> Hourglass forces of one chunk and their work.
+  pure subroutine apply_hourglass_control(i_chunk, material, hourglass, stress, elements, chunk)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
@@ -34,8 +35,8 @@ contains
     if (allocated(elements%n_failed)) has_failed = elements%n_failed(i_chunk) > 0
     associate (memory => elements%hourglass_strain)
       if (has_failed) then
-        ! No hourglass velocity of elements whose force is gone. In the step in which an element
-        ! fails the force before it still does work.
+        ! Failed elements have no hourglass velocity. In the step of failure the previous force
+        ! still does work.
         call find_failed(material, elements%history(elements%history_start(i_chunk)), failed, &
           ignored)
         where (failed .and. .not. abs(memory(x:x + chunk_size - 1)) &
@@ -46,18 +47,18 @@ contains
       end if
       if (hourglass%form == hourglass_assumed) then
         if (chunk%is_axisymmetric) call form_resistance(material, hourglass, chunk)
-        call resist_by_assumed_strain(material, hourglass, stress, memory(x), memory(y), chunk, &
+        call hourglass_assumed_strain(material, hourglass, stress, memory(x), memory(y), chunk, &
           work)
       else
         call form_resistance(material, hourglass, chunk)
         if (hourglass%form == hourglass_viscous) then
-          call resist_viscously(stress%dt, memory(x), memory(y), chunk, work)
+          call hourglass_viscous_force(stress%dt, memory(x), memory(y), chunk, work)
         else
-          call resist_elastically(stress%dt, stress, memory(x), memory(y), chunk, work)
+          call hourglass_stiffness_force(stress%dt, stress, memory(x), memory(y), chunk, work)
         end if
       end if
       if (has_failed) then
-        ! At the end of the step in which an element fails its force does no work any more.
+        ! At the end of the step of failure the force does no work.
         do i = 1, chunk_size
           if (.not. failed(i)) cycle
           chunk%hourglass_work(i) = chunk%hourglass_work(i) - 0.5_wp*stress%dt*(chunk%qx(i) &
@@ -71,14 +72,14 @@ contains
     end associate
     elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
     if (allocated(elements%erosion)) then
-      ! Element by element, where these may leave.
+      ! Per element, with erosion.
       associate (first => (i_chunk - 1)*chunk_size + 1)
         associate (works => elements%erosion%hourglass(first:first + chunk_size - 1))
           works = works + chunk%hourglass_work
         end associate
       end associate
     end if
-  end subroutine resist
+  end subroutine apply_hourglass_control
 
   !> Force over gamma.v, (Q_h rho c sqrt(A)/4); or over its integral,
   !> (Q_h/4)(K + 4G/3)((B_x.B_x + B_y.B_y)/A); or a bound of that for assumed strain,
@@ -129,12 +130,12 @@ contains
     end if
   end subroutine form_resistance
 
-  !> Viscous form. Its work is that of the mean of the present force and of that of the step before:
-  !> a force acts over half of the step that it was formed from and half of the next.
-  pure subroutine resist_viscously(dt, last_x, last_y, chunk, work)
+  !> Viscous form. The work is that of the mean of the present and the previous force: a force acts
+  !> over half of the step that it was formed from and half of the next.
+  pure subroutine hourglass_viscous_force(dt, last_x, last_y, chunk, work)
     real(wp), intent(in) :: dt
-    real(wp), intent(inout), dimension(chunk_size) :: last_x, last_y !! q of the step before; then
-                                                  !! the present one
+    real(wp), intent(inout), dimension(chunk_size) :: last_x, last_y !! q of the previous step in,
+                                                                     !! of this one out
     type(element_chunk_t), intent(inout) :: chunk !! q_x, q_y and their work out
     real(wp), intent(out) :: work                 !! of all of them in the step
     integer :: i
@@ -150,14 +151,14 @@ contains
       last_y(i) = chunk%qy(i)
       work = work + chunk%hourglass_work(i)
     end do
-  end subroutine resist_viscously
+  end subroutine hourglass_viscous_force
 
-  !> Stiffness form: the hourglass strain e turns with the element. With the rotation R of the step,
-  !> e' = R e + (1 + R) dt g/2:
-  !> gamma.v is of the mid-step frame, half a rotation back, and (1 + R)/2 is that half rotation
-  !> times its cosine, by which gamma.v of a turning element is too large. So a pattern that grows
-  !> while its element turns is kept without error, whatever the step, and no step divides by zero.
-  pure subroutine resist_elastically(dt, stress, strain_x, strain_y, chunk, work)
+  !> Stiffness form: the hourglass strain e rotates with the element. With the rotation R of the
+  !> step, e' = R e + (1 + R) dt g/2: gamma.v is of the mid-step frame, half a rotation back, and (1
+  !> + R)/2 is that half rotation times its cosine, by which gamma.v of a rotating element is too
+  !> large. So a pattern that grows while its element rotates is kept without error for any step,
+  !> and no step divides by zero.
+  pure subroutine hourglass_stiffness_force(dt, stress, strain_x, strain_y, chunk, work)
     real(wp), intent(in) :: dt
     type(stress_chunk_t), intent(in) :: stress      !! rotation of the step
     real(wp), intent(inout), dimension(chunk_size) :: strain_x, strain_y
@@ -183,15 +184,15 @@ contains
         + (strain_y(i) + old_y)*growth_y)
       work = work + chunk%hourglass_work(i)
     end do
-  end subroutine resist_elastically
+  end subroutine hourglass_stiffness_force
 
-  !> Assumed strain (Belytschko & Bindeman 1991, the field of optimal bending): the elastic stress
-  !> of the hourglass strain, in a frame that turns with the element, integrated in closed form
+  !> Assumed strain (Belytschko & Bindeman 1991, optimal bending field): the elastic stress of the
+  !> hourglass strain in a frame that rotates with the element, integrated in closed form
   !> (doc/theory/elements.md, "Assumed strain"). Steps the generalised stress Q of the element's
   !> frame,
-  !>   Q' = factor [H_xx, -lateral H_xy; -lateral H_xy, H_yy] (gamma.v in that frame),
-  !> with H of the mid-step shape, so that a motion and its reverse leave nothing behind.
-  pure subroutine resist_by_assumed_strain(material, hourglass, stress, stress_x, stress_y, chunk, &
+  !>  Q' = factor [H_xx, -lateral H_xy; -lateral H_xy, H_yy] (gamma.v in that frame),
+  !> with H of the mid-step shape, so that a motion and its reverse leave nothing.
+  pure subroutine hourglass_assumed_strain(material, hourglass, stress, stress_x, stress_y, chunk, &
     work)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
@@ -230,7 +231,7 @@ contains
       mxy = weight*lateral*(added_x*added_y + grown_x*grown_y)
       grown_x = cosine*chunk%gx(i) + sine*chunk%gy(i)
       grown_y = cosine*chunk%gy(i) - sine*chunk%gx(i)
-      ! gamma.v of an element that turns is too large by one over the cosine of half the angle.
+      ! gamma.v of a rotating element is too large by 1/cos(half the angle).
       half = stress%dt*sqrt(0.5_wp + 0.5_wp*stress%cosine(i))
       grown_x = half*grown_x
       grown_y = half*grown_y
@@ -258,7 +259,7 @@ contains
       chunk%qx(i) = weight*chunk%qx(i)
       chunk%qy(i) = weight*chunk%qy(i)
     end do
-  end subroutine resist_by_assumed_strain
+  end subroutine hourglass_assumed_strain
 
   !> QM E/(16 (1 - nu^2)) and nu/(1 - nu).
   pure subroutine form_moduli(material, hourglass, factor, lateral)

@@ -1,8 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Mass scaling (DT2MS of *CONTROL_TIMESTEP): elements get so much mass that their stable step is
-!> |DT2MS|; with DT2MS > 0 those of larger steps lose mass too. Omega falls with the root of the
-!> mass, and the damping of a mode falls faster, so that a step of more mass is at least the root as
-!> large. With less mass damping grows: where there is any the step is taken as in proportion.
+!> Mass scaling (DT2MS of *CONTROL_TIMESTEP): mass is added to elements until their stable step is
+!> |DT2MS|; with DT2MS > 0 mass is also removed from elements of larger steps. Omega falls with the
+!> root of the mass, and the damping of a mode falls faster, so that the step rises at least with
+!> the root of the mass. With less mass damping grows: with damping the step is taken proportional
+!> to the mass.
 module mass_scaling_m
   use block_state_m, only : block_state_t
   use element_mass_m, only : element_shares
@@ -15,8 +16,8 @@ module mass_scaling_m
   public :: scales_masses, start_mass_scaling, refine_limits, needs_refinement, grow_masses, &
     added_masses
 
-  !> By how much the step of an element that has become too small is made larger than asked: it then
-  !> lasts for some cycles.
+  !> Factor on the step of an element that gets mass during the run, so that the mass suffices for
+  !> some cycles.
   real(wp), parameter :: reserve = 1.01_wp
 
 contains
@@ -29,12 +30,12 @@ contains
     scales = abs(model%controls%mass_step) > 0.0_wp .and. .not. model%controls%implicit%is_on
   end function scales_masses
 
-  !> The masses of time zero; those of nodes so far are of the densities.
+  !> Scale the masses at time zero.
   subroutine start_mass_scaling(model, motion, elements, mass)
     type(model_t), intent(in) :: model
     real(wp), intent(in), contiguous :: motion(:, :)  !! (4, n_node)
     type(block_state_t), intent(inout) :: elements
-    real(wp), intent(inout) :: mass(:)                !! (n_node)
+    real(wp), intent(inout) :: mass(:)                !! (n_node) from the densities in
     real(wp) :: steps(chunk_size)
     integer :: i_chunk, i, slot
 
@@ -51,7 +52,7 @@ contains
     end do
   end subroutine start_mass_scaling
 
-  !> Give an element its mass.
+  !> Set the mass of an element and update its nodes.
   pure subroutine set_ratio(model, slot, ratio, elements, mass)
     type(model_t), intent(in) :: model
     integer, intent(in) :: slot
@@ -70,7 +71,7 @@ contains
     end do
   end subroutine set_ratio
 
-  !> Whether the limits that the forces of a step leave are not those of all elements.
+  !> Whether the step limits of the forces do not hold for all elements.
   pure function needs_refinement(elements) result(needs)
     type(block_state_t), intent(in) :: elements
     logical :: needs
@@ -79,13 +80,12 @@ contains
       .or. allocated(elements%mass_shares)
   end function needs_refinement
 
-  !> Limits of the chunks of a tile with elements that are scaled, damped or exposed, once the
-  !> forces of the step have left those of others.
+  !> Update the step limits of the chunks of a tile with scaled, damped or exposed elements.
   subroutine refine_limits(model, tile, motion, dt, elements)
     type(model_t), intent(in) :: model
     type(tile_t), intent(in) :: tile
     real(wp), intent(in), contiguous :: motion(:, :)
-    real(wp), intent(in) :: dt                       !! step that led here
+    real(wp), intent(in) :: dt                       !! previous step
     type(block_state_t), intent(inout) :: elements   !! only this tile's chunks are touched
     integer :: i_chunk
 
@@ -94,7 +94,7 @@ contains
     end do
   end subroutine refine_limits
 
-  !> Limit of one chunk; the same step for all of it with DT2MS > 0.
+  !> Step limit of one chunk; at most DT2MS if that is positive.
   subroutine limit_chunk(model, i_chunk, motion, dt, elements)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
@@ -128,8 +128,8 @@ contains
     elements%time_limit(i_chunk) = limit
   end subroutine limit_chunk
 
-  !> Mass for elements whose step has become too small since, on the geometry of the next cycle.
-  !> Velocities stay: `work` is the kinetic energy that the new mass brings.
+  !> Add mass to elements whose stable step has become too small, on the geometry of the next cycle.
+  !> Velocities stay: `work` is the kinetic energy of the new mass.
   subroutine grow_masses(model, motion, dt, elements, mass, work)
     type(model_t), intent(in) :: model
     real(wp), intent(in), contiguous :: motion(:, :)
@@ -160,7 +160,7 @@ contains
     end do
   end subroutine grow_masses
 
-  !> Mass over that of the density which takes an element from one step to another.
+  !> Mass ratio that takes an element from one stable step to another.
   pure function needed_ratio(model, slot, step, target) result(ratio)
     type(model_t), intent(in) :: model
     integer, intent(in) :: slot
@@ -174,7 +174,7 @@ contains
     ratio = ratio**2
   end function needed_ratio
 
-  !> Added mass of each part, below zero where some was taken away; and the mass without it.
+  !> Added mass of each part, negative where mass was removed, and its mass from the densities.
   pure subroutine added_masses(model, elements, added, own)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements

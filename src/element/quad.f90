@@ -1,16 +1,16 @@
 ! SPDX-License-Identifier: MIT
-!> One chunk of quads, plane or axisymmetric: from nodal motion to nodal forces, stress updated on
-!> the way. A quad has one point, and hourglass control, or 2x2 Gauss points, in axisymmetric bodies
-!> weighted by their radius: at each of them the equations of the one-point plane quad, and the hoop
-!> strain v_r/r. The volumetric stress is K ln J of the point, or with mean dilatation K ln(V/V0) of
-!> the element at all four (Nagtegaal, Parks & Rice 1974).
+!> One chunk of quads, plane or axisymmetric: from nodal motion to nodal forces, with the stress
+!> update. A quad has one point and hourglass control, or 2x2 Gauss points, in axisymmetric models
+!> weighted by their radius: each has the equations of the one-point plane quad, and the hoop strain
+!> v_r/r. The volumetric stress is K ln J of the point, or with mean dilatation K ln(V/V0) of the
+!> element at all four (Nagtegaal, Parks & Rice 1974).
 module quad_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t, gather_motion, reference_mass
   use eos_pressure_m, only : finish_limits, load_point_state, start_point_values, &
     add_point_values, add_law_values, form_shared_pressure
-  use hourglass_m, only : resist
+  use hourglass_m, only : apply_hourglass_control
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress, history_size, has_mean_dilatation
   use model_m, only : model_t
@@ -29,8 +29,7 @@ module quad_m
   private
   public :: advance_chunk, limit_chunk, start_points, move_point, sums_t
 
-  !> What the points leave: what the stable step takes, axisymmetric ones themselves, and the sum of
-  !> deviator times volume.
+  !> Sums over the points: data of the stable step, axisymmetric points, and deviator times volume.
   type :: sums_t
     type(step_sums_t) :: step
     type(axisym_point_t) :: places(n_point)
@@ -39,8 +38,8 @@ module quad_m
 
 contains
 
-  !> Advance one chunk by the step `dt` that led to the present motion (dt = 0: forces only) and
-  !> leave its forces in `chunk`, of axisymmetric quads per radian.
+  !> Advance one chunk by the step `dt` before the present motion (dt = 0: forces only); forces in
+  !> `chunk`, of axisymmetric quads per radian.
   pure subroutine advance_chunk(model, i_chunk, nodes, motion, dt, elements, chunk)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
@@ -81,7 +80,7 @@ contains
     end associate
   end subroutine advance_chunk
 
-  !> Stress and forces of one-point quads, whose shape is there.
+  !> Stress and forces of one-point quads, whose shape is set.
   pure subroutine advance_one_point(i_chunk, material, hourglass, dt, elements, chunk, now)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
@@ -89,13 +88,13 @@ contains
     real(wp), intent(in) :: dt
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk
-    type(moduli_t), intent(inout) :: now          !! with an equation of state its present ones
+    type(moduli_t), intent(inout) :: now          !! present moduli with an equation of state
     type(stress_chunk_t) :: stress
 
     call form_increments(dt, chunk, stress)
     call advance_stress(i_chunk, 1, material, chunk, chunk, elements, stress)
     if (allocated(material%eos)) then
-      ! What else an element does heats it.
+      ! All other work heats the element.
       call start_point_values(material, chunk)
       chunk%heat = stress%work*chunk%mid_area
       if (gives_pressure(material)) call add_law_values(material, 1.0_wp/inverse_start(chunk), &
@@ -108,7 +107,7 @@ contains
       if (allocated(elements%retardation)) call add_damping(i_chunk, 1, material, .true., &
         elements, chunk, stress)
     end if
-    call resist(i_chunk, material, hourglass, stress, elements, chunk)
+    call apply_hourglass_control(i_chunk, material, hourglass, stress, elements, chunk)
     if (.not. chunk%is_axisymmetric) then
       call form_forces(stress, chunk)
     else if (allocated(material%rubber)) then
@@ -118,8 +117,8 @@ contains
     end if
   end subroutine advance_one_point
 
-  !> Stress and forces of quads of several points, whose shape is there. Of hourglass control only
-  !> the bulk viscosity counts.
+  !> Stress and forces of fully integrated quads, whose shape is set. Of `hourglass` only the bulk
+  !> viscosity counts.
   pure subroutine advance_points(i_chunk, material, hourglass, dt, elements, chunk, sums, now)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
@@ -128,7 +127,7 @@ contains
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk
     type(sums_t), intent(inout) :: sums
-    type(moduli_t), intent(inout) :: now          !! with an equation of state its present ones
+    type(moduli_t), intent(inout) :: now          !! present moduli with an equation of state
     type(element_chunk_t) :: point
     real(wp) :: inverse(chunk_size)
     integer :: first, j, k
@@ -151,7 +150,7 @@ contains
       elements%deviator(first:first + chunk_size - 1, j) = sums%deviator(:, j)*inverse
     end do
     if (.not. allocated(material%eos)) return
-    ! What the points have done heats the pressure that all of them share.
+    ! The work of the points heats the element, which has one pressure.
     call form_shared_pressure(i_chunk, material, hourglass, inverse_start(chunk), elements, chunk, &
       now)
     call add_pressure_forces(chunk)
@@ -189,7 +188,7 @@ contains
     end associate
   end subroutine limit_chunk
 
-  !> The pressure that all points of an element share: bulk viscosity of the mean rate, and the
+  !> Pressure shared by the points of an element: bulk viscosity of the mean rate, and the
   !> volumetric stress with mean dilatation.
   pure subroutine form_mean_pressure(i_chunk, material, hourglass, dt, elements, chunk)
     integer, intent(in) :: i_chunk
@@ -220,7 +219,7 @@ contains
       elements%damping_work(i_chunk))
   end subroutine form_mean_pressure
 
-  !> Nothing summed yet, and what no point has of an element: hourglass patterns.
+  !> Initialise the sums, and the hourglass patterns, which points do not have.
   pure subroutine start_points(is_axisymmetric, point, sums)
     logical, intent(in) :: is_axisymmetric
     type(element_chunk_t), intent(inout) :: point
@@ -265,7 +264,7 @@ contains
     call add_point_force(k, point, chunk)
   end subroutine advance_point
 
-  !> Shape, increments of the step and share in the volume of point `k`.
+  !> Shape, increments of the step and volume of point `k`.
   pure subroutine move_point(i_chunk, k, dt, elements, chunk, point, stress, sums)
     integer, intent(in) :: i_chunk, k
     real(wp), intent(in) :: dt
@@ -294,7 +293,7 @@ contains
     end if
   end subroutine move_point
 
-  !> Deviator of the point, or of point `k`, by its law.
+  !> Update the deviator of point `k`, or of the one point, by its law.
   pure subroutine advance_stress(i_chunk, k, material, chunk, point, elements, stress)
     integer, intent(in) :: i_chunk, k
     type(material_t), intent(in) :: material
@@ -339,7 +338,7 @@ contains
       elements%deviatoric_work(i_chunk) + work_of_deviator(stress%work, point%mid_area)
   end subroutine advance_stress
 
-  !> Bulk viscosity of elements without an equation of state.
+  !> Add bulk viscosity to elements without an equation of state.
   pure subroutine add_viscosity(i_chunk, material, hourglass, dt, elements, chunk)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
@@ -356,11 +355,11 @@ contains
     elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
   end subroutine add_viscosity
 
-  !> Stress of damping by stiffness of the point, or of point `k`.
+  !> Add the stress of stiffness damping of point `k`, or of the one point.
   pure subroutine add_damping(i_chunk, k, material, has_pressure, elements, point, stress)
     integer, intent(in) :: i_chunk, k
     type(material_t), intent(in) :: material
-    logical, intent(in) :: has_pressure           !! of its own
+    logical, intent(in) :: has_pressure           !! the point has its own pressure
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: point
     type(stress_chunk_t), intent(inout) :: stress

@@ -35,7 +35,7 @@ contains
 
   !> Strain increments, spin and hourglass velocity of the step, in the mid-step geometry.
   pure subroutine form_increments(dt, chunk, stress)
-    real(wp), intent(in) :: dt                      !! step that led here
+    real(wp), intent(in) :: dt                      !! step to the present instant
     type(element_chunk_t), intent(inout) :: chunk
     type(stress_chunk_t), intent(inout) :: stress   !! increments and rotation out
 
@@ -58,7 +58,7 @@ contains
     end if
   end function inverse_start
 
-  !> Of plane quads: present diagonals, area and volume ratio. A - A0 is formed from the
+  !> Present diagonals, area and volume ratio of plane quads. A - A0 is formed from the
   !> displacement, so that a nearly undeformed element keeps all digits of its strain.
   pure subroutine form_present_shape(reference, stride, chunk)
     integer, intent(in) :: stride                 !! length of one stream
@@ -87,9 +87,9 @@ contains
     end do
   end subroutine form_present_shape
 
-  !> Those of plane quads.
+  !> Strain increments, spin and hourglass velocity of plane quads, in the mid-step geometry.
   pure subroutine form_plane_increments(dt, chunk, stress)
-    real(wp), intent(in) :: dt                      !! step that led here
+    real(wp), intent(in) :: dt                      !! step to the present instant
     type(element_chunk_t), intent(inout) :: chunk
     type(stress_chunk_t), intent(inout) :: stress   !! increments and rotation out
     real(wp) :: x31, y31, x42, y42, back, factor, lxx, lxy, lyx, lyy, area, turn, square, &
@@ -125,7 +125,7 @@ contains
       stress%sine(i) = sine
       stress%cos2(i) = cosine*cosine - sine*sine
       stress%sin2(i) = 2.0_wp*cosine*sine
-      ! Mid-step increments turn by half the rotation to stand beside the rotated stress.
+      ! Mid-step increments are rotated by half the rotation, into the frame of the rotated stress.
       mean = back*(lxx + lyy)
       half = back*(lxx - lyy)
       shear = back*(lxy + lyx)
@@ -228,11 +228,10 @@ contains
     end do
   end subroutine form_axisym_shape
 
-  !> Strain increments, spin and hourglass velocity of the step, from the shape half a step ago.
-  !> The hoop rate is taken from both rates in the plane: laws see the same deviator, their D_zz
-  !> is 0.
+  !> Strain increments, spin and hourglass velocity of axisymmetric quads, in the mid-step geometry.
+  !> The hoop rate is subtracted from both in-plane rates: laws see the same deviator with D_zz = 0.
   pure subroutine form_axisym_increments(dt, chunk, stress)
-    real(wp), intent(in) :: dt                    !! step that led here
+    real(wp), intent(in) :: dt                    !! step to the present instant
     type(element_chunk_t), intent(inout) :: chunk !! trace, gamma.v and mid-step volume out
     type(stress_chunk_t), intent(inout) :: stress !! increments and rotation out
     real(wp) :: ar, az, br, bz, hr, hz, s, area, volume, rad_a, rad_b, rad_h, axi_a, axi_b, axi_h, &
@@ -331,8 +330,8 @@ contains
     end do
   end subroutine form_axisym_forces
 
-  !> Add the forces of the pressure that all points of an element share, of whose volume they sum
-  !> the gradient without error.
+  !> Add the forces of the pressure shared by the points of an element; their gradients of the
+  !> volume are exact.
   pure subroutine add_pressure_forces(chunk)
     type(element_chunk_t), intent(inout) :: chunk
     real(wp) :: half
@@ -417,7 +416,7 @@ contains
       -2.0_wp*part*ar*br]
   end function start_gradients
 
-  !> The part out of the plane, and the dilatation of the element in place of the point's own.
+  !> Out-of-plane component, and scaling to the dilatation of the element.
   pure subroutine finish_gradient(own, stress)
     real(wp), intent(in) :: own(chunk_size)
     type(stress_chunk_t), intent(inout) :: stress

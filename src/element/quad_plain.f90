@@ -1,11 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> The frequent case of a one-point quad (`quad`) in three loops: an elastic material, or J2
-!> plasticity without back stress, under viscous hourglass control and with nothing else. The
-!> equations are those of `quad_kinematics`, `material_j2`, `volumetric`, `hourglass` and
-!> `stable_step`; it saves a tenth of the instructions of a whole run (doc/theory/elements.md).
-!> One loop would be too long for a processor to look ahead into the next elements while divisions
-!> and roots are under way: for x86-64-v3 it takes a sixth less instructions than theirs and a
-!> quarter more time.
+!> Fast path for the frequent one-point quad (`quad`) in three loops: an elastic material, or J2
+!> plasticity without back stress, with viscous hourglass control and nothing else. The equations
+!> are those of `quad_kinematics`, `material_j2`, `volumetric`, `hourglass` and `stable_step`; it
+!> saves a tenth of the instructions of a run (doc/theory/elements.md). A single loop is too long
+!> for a processor to overlap divisions and roots of consecutive elements: on x86-64-v3 it takes a
+!> sixth fewer instructions and a quarter more time.
 module quad_plain_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
@@ -27,7 +26,7 @@ module quad_plain_m
     real(wp), dimension(4, chunk_size) :: d31, d42, h
   end type diagonals_t
 
-  !> What one loop leaves to the next.
+  !> Values passed from loop to loop.
   type :: shape_t
     real(wp), dimension(chunk_size) :: x31, y31, x42, y42, hx, hy !! present diagonals, h.x
     real(wp), dimension(chunk_size) :: a2, of_a2      !! 2A and 1/2A now
@@ -39,7 +38,7 @@ module quad_plain_m
                                                          !! (xx - yy)/2 and xy in the mid-step frame
   end type shape_t
 
-  !> What is found of the chunk.
+  !> Results of the chunk.
   type :: found_t
     real(wp) :: power          !! of the hourglass forces of both ends of the step
     real(wp) :: longest        !! largest (longest side/A)^2
@@ -48,7 +47,7 @@ module quad_plain_m
 
 contains
 
-  !> Whether a part asks for nothing that `advance_plain` has not.
+  !> Whether a part needs nothing beyond `advance_plain`.
   pure function is_plain(model, part, material, elements) result(yes)
     type(model_t), intent(in) :: model
     type(part_t), intent(in) :: part
@@ -66,7 +65,7 @@ contains
     end associate
   end function is_plain
 
-  !> As `advance_one_point`.
+  !> Advance one chunk as `advance_one_point`.
   pure subroutine advance_plain(i_chunk, nodes, motion, material, coefficient, dt, elements, chunk)
     integer, intent(in) :: i_chunk
     integer, intent(in) :: nodes(4, chunk_size)
@@ -97,7 +96,7 @@ contains
       *material%sound_speed, shape, n_slot, elements%deviator(first, 1), &
       elements%hourglass_strain(elements%hourglass_start(i_chunk)), chunk, found)
     elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + 0.5_wp*dt*found%power
-    ! Where no volume is 2 % from its own there is nothing to limit, or a step later there is.
+    ! Below 2 % of volume change nothing limits the step.
     elements%volume_change(i_chunk) = 0.0_wp
     if (found%least < -0.01_wp .or. found%largest > 0.01_wp) &
       elements%volume_change(i_chunk) = 2.0_wp*largest_size(shape%mean)
@@ -109,7 +108,7 @@ contains
     elements%volume_limit(i_chunk) = 1.0_wp + minval(chunk%stretch)
   end subroutine advance_plain
 
-  !> As `gather_motion`, by vectors of four.
+  !> Differences of the nodal motion as in `gather_motion`, by vectors of four.
   pure subroutine gather_diagonals(nodes, motion, diagonals)
     integer, intent(in) :: nodes(4, chunk_size)
     real(wp), intent(in) :: motion(4, *)
@@ -132,7 +131,7 @@ contains
   !> Present and mid-step shape, strain increments, rotation and hourglass velocity. Areas stand
   !> twice: a2 = 2A now, s2 at time zero, m2 half a step ago.
   pure subroutine form_shape(dt, n_slot, reference, diagonals, shape)
-    real(wp), intent(in) :: dt                      !! step that led here
+    real(wp), intent(in) :: dt                      !! step to the present instant
     integer, intent(in) :: n_slot
     real(wp), intent(in) :: reference(n_slot, *)
     type(diagonals_t), intent(in) :: diagonals
@@ -207,8 +206,8 @@ contains
     end do
   end subroutine form_shape
 
-  !> Deviator of elastic elements. It stands as mean (s_xx + s_yy)/2, half (s_xx - s_yy)/2 and
-  !> shear s_xy, and is strained in the mid-step frame, half of the rotation before and half behind.
+  !> Deviator of elastic elements, as mean (s_xx + s_yy)/2, half (s_xx - s_yy)/2 and shear s_xy,
+  !> updated in the mid-step frame: half of the rotation before, half after the strain increment.
   pure subroutine strain_elastic(modulus, shape, n_slot, deviator, work)
     real(wp), intent(in) :: modulus               !! G
     type(shape_t), intent(in) :: shape
@@ -240,7 +239,7 @@ contains
     work = 0.5_wp*work
   end subroutine strain_elastic
 
-  !> The same with radial return: see `update_j2_isotropic`.
+  !> Deviator with radial return: see `update_j2_isotropic`.
   pure subroutine strain_plastic(material, shape, n_slot, deviator, plastic_strain, work)
     type(material_t), intent(in) :: material
     type(shape_t), intent(in) :: shape
@@ -293,7 +292,7 @@ contains
     type(shape_t), intent(in) :: shape
     integer, intent(in) :: n_slot
     real(wp), intent(in) :: deviator(n_slot, *)
-    real(wp), intent(inout) :: last(chunk_size, 2)   !! q of the step before; then the present one
+    real(wp), intent(inout) :: last(chunk_size, 2)   !! q of the previous step in, of this one out
     type(element_chunk_t), intent(inout) :: chunk    !! `force3`, `force4` and `swing` out
     type(found_t), intent(out) :: found
     real(wp) :: z, w, pressure, root, qx, qy, wx, wy, txx, txy, tyx, tyy, ax, ay, bx, by, power, &
@@ -309,7 +308,7 @@ contains
     do i = 1, chunk_size
       z = shape%z(i)
       w = z*z
-      ! Half of it: bulk*atanh(z).
+      ! Half the pressure: bulk*atanh(z).
       pressure = bulk*(z + z*w*(1.0_wp/3.0_wp + w*(1.0_wp/5.0_wp + w*(1.0_wp/7.0_wp &
         + w*(1.0_wp/9.0_wp + w*(1.0_wp/11.0_wp + w*(1.0_wp/13.0_wp + w*(1.0_wp/15.0_wp))))))))
       root = viscosity*sqrt(0.5_wp*abs(shape%a2(i)))
@@ -345,7 +344,7 @@ contains
     found = found_t(power, longest, least, largest)
   end subroutine form_plain_forces
 
-  !> The pressure of elements where the series of ln(J) is not exact.
+  !> Correct the pressure of elements beyond the range of the series for ln(J).
   pure subroutine correct_pressure(bulk, n_slot, reference, chunk)
     real(wp), intent(in) :: bulk
     integer, intent(in) :: n_slot

@@ -26,27 +26,27 @@ module quad_points_m
     beside, near, beside, far, far, beside, near, beside, beside, far, beside, near], [4, n_point])
 
   real(wp), parameter :: g = 0.25_wp*third_root !! 1/(4 sqrt(3))
-  !> Shape functions at the points in the patterns: a quarter of s, and of a, b and h these.
+  !> Shape functions at the points in the patterns: a quarter of s, and these factors of a, b and h.
   real(wp), parameter :: along_a(n_point) = 2.0_wp*g*[-1.0_wp, 0.0_wp, 1.0_wp, 0.0_wp], &
     along_b(n_point) = 2.0_wp*g*[0.0_wp, -1.0_wp, 0.0_wp, 1.0_wp], &
     along_h(n_point) = [1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp]/12.0_wp
 
-  !> What a point of axisymmetric quads has besides: its radius, and what the stable step takes of
-  !> it.
+  !> Data of a point of axisymmetric quads: radius and data of the stable step.
   type :: axisym_point_t
     real(wp), dimension(chunk_size) :: radius, speed     !! r and v_r, now
-    real(wp), dimension(chunk_size) :: volume            !! that it stands for, now
+    real(wp), dimension(chunk_size) :: volume            !! present volume of the point
     real(wp), dimension(chunk_size) :: stretch           !! J - 1
     real(wp), dimension(chunk_size) :: c33, c44, c34     !! products of the gradients of d31, d42
   end type axisym_point_t
 
-  !> Values at the nodes from those at the points: of its own, of the two beside it, of the far one.
+  !> Values at the nodes from values at the points: factors of the own point, of the two neighbours,
+  !> of the opposite one.
   real(wp), parameter :: own_share = 0.25_wp*(1.0_wp + sqrt(3.0_wp))**2, &
     next_share = -0.5_wp, far_share = 0.25_wp*(1.0_wp - sqrt(3.0_wp))**2
   !> Radii below this share of those of the points are round-off.
   real(wp), parameter :: on_axis = 1.0e-12_wp
 
-  !> What the stable step takes of the points. Of plane quads the scalar matrix in d31, d42 and h.x
+  !> Sums over the points for the stable step: of plane quads the scalar matrix in d31, d42 and h.x
   !> (11 22 12 13 23 33), of axisymmetric ones the largest row sums of H and T
   !> (`axisymmetric_full_step`); smallest J.
   type :: step_sums_t
@@ -83,7 +83,7 @@ contains
     point%v42 = element%v42 + shift(2, k)*element%hv
   end subroutine form_point
 
-  !> Add the forces of point `k` to those of its elements.
+  !> Add the forces of point `k` to its elements.
   pure subroutine add_point_force(k, point, element)
     integer, intent(in) :: k
     type(element_chunk_t), intent(in) :: point      !! `force` as of a one-point element
@@ -103,8 +103,7 @@ contains
     end do
   end subroutine add_point_force
 
-  !> J - 1 at the points of one element, and the initial area, or volume per radian, that each of
-  !> them stands for.
+  !> J - 1 at the points of one element, and the initial area, or volume per radian, of each.
   pure subroutine point_ratios(is_axisymmetric, reference, u, stretch, start)
     logical, intent(in) :: is_axisymmetric
     real(wp), intent(in) :: reference(reference_sum) !! X31 Y31 X42 Y42 h.X h.Y, and of axisymmetric
@@ -135,7 +134,7 @@ contains
     end do
   end subroutine point_ratios
 
-  !> Area that each point of one element stands for.
+  !> Area of each point of one element.
   pure function point_areas(x) result(areas)
     real(wp), intent(in) :: x(2, 4) !! corners
     real(wp) :: areas(n_point)
@@ -157,7 +156,7 @@ contains
     area = 0.5_wp*(d31(1)*d42(2) - d42(1)*d31(2))
   end function signed_area
 
-  !> Radius, volume and J - 1 of point `k`, whose plane shape is there.
+  !> Radius, volume and J - 1 of point `k`, whose plane shape is set.
   pure subroutine form_radii(k, reference, stride, chunk, point, place)
     integer, intent(in) :: k
     integer, intent(in) :: stride
@@ -189,8 +188,8 @@ contains
     end do
   end subroutine form_radii
 
-  !> The hoop rate in the mid-step shape, as `form_axisym_increments` has it; the share of the point
-  !> in the mid-step area becomes that in the volume.
+  !> Hoop rate in the mid-step shape, as in `form_axisym_increments`; the area of the point becomes
+  !> a volume.
   pure subroutine add_hoop_strain(dt, place, point, stress)
     real(wp), intent(in) :: dt
     type(axisym_point_t), intent(in) :: place
@@ -211,7 +210,7 @@ contains
     end do
   end subroutine add_hoop_strain
 
-  !> Weigh the plane force of point `k` with its radius and add the force of the hoop stress.
+  !> Weight the plane force of point `k` with its radius and add the force of the hoop stress.
   pure subroutine add_hoop_force(k, place, stress, point, chunk)
     integer, intent(in) :: k
     type(axisym_point_t), intent(in) :: place
@@ -314,7 +313,7 @@ contains
       h24 = s(i, 6) - s(i, 2)
       h34 = (s(i, 3) - s(i, 4)) + (s(i, 5) - s(i, 6))
       w3 = inverse_mass(i, 3)
-      ! The third node of a triangle has the place of the fourth too, whose row and column go.
+      ! A triangle's fourth node equals its third: merge row and column.
       only = merge(1.0_wp, 0.0_wp, inverse_mass(i, 4) <= 0.0_wp)
       t(i, 3) = t(i, 3) + only*t(i, 4)
       h33 = h33 + only*(2.0_wp*h34 + h44)

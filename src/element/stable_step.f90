@@ -22,7 +22,7 @@ module stable_step_m
   !> initial area (doc/theory/elements.md).
   real(wp), parameter :: harmless_coefficient = 0.25_wp
 
-  !> What stable steps take of a material, or of its present state.
+  !> Material data of stable steps, of the present state.
   type :: moduli_t
     real(wp) :: density             !! of the undeformed body, kg/m^3
     real(wp) :: bulk, shear         !! K and G
@@ -30,9 +30,9 @@ module stable_step_m
     logical :: has_mean_dilatation
   end type moduli_t
 
-  !> Of one-point axisymmetric quads, over the masses: bounds of omega^2 of strain and of its part
-  !> by volume (over lambda); of hourglass control its gamma.gamma, and the square of its coupling
-  !> to strain, both times the resistance.
+  !> One-point axisymmetric quads, divided by the masses: bounds of omega^2 of strain and of its
+  !> volumetric part (over lambda); gamma.gamma of hourglass control, and its squared coupling to
+  !> strain, both times the resistance.
   type :: axisymmetric_sums_t
     real(wp), dimension(chunk_size) :: strain, dilation, pattern, coupling
   end type axisymmetric_sums_t
@@ -92,7 +92,7 @@ contains
     if (present(single)) single = min(single, squared)
   end subroutine stable_step
 
-  !> Step of one element under bulk viscosity.
+  !> Stable step of one element with bulk viscosity.
   pure elemental function viscous_limit(length, sound_speed, quadratic, linear, trace) result(limit)
     real(wp), intent(in) :: length, sound_speed, quadratic, linear, trace
     real(wp) :: limit
@@ -159,10 +159,10 @@ contains
     steps = 2.0_wp/(sound_speed*sqrt(max(hourglass%coefficient*pattern, tiny(1.0_wp))))
   end function hourglass_steps
 
-  !> The same of one-point axisymmetric quads, hourglass control and bulk viscosity included. With
-  !> x = omega^2 dt^2/4 of strain, y the same of hourglass control and z^2 the coupling, the element
-  !> is stable where (1 - x)(1 - y) >= z^2, and so where y <= 1/2 and x + 2 z^2 <= 1. The volume is
-  !> below 0 where an area is.
+  !> Smallest stable step of a chunk of one-point axisymmetric quads, with hourglass control and
+  !> bulk viscosity. With x = omega^2 dt^2/4 of strain, y of hourglass control and z^2 of the
+  !> coupling, the element is stable where (1 - x)(1 - y) >= z^2, and so where y <= 1/2 and x + 2
+  !> z^2 <= 1. The volume is negative where an area is.
   pure subroutine axisymmetric_step(material, hourglass, inverse_mass, stride, chunk, limit, &
       volume, single)
     type(moduli_t), intent(in) :: material
@@ -207,8 +207,8 @@ contains
     if (present(single)) single = single/(1.0_wp + 0.5_wp*single*sums%dilation)
   end subroutine axisymmetric_step
 
-  !> By which the square of the coupling counts. Resistances of the viscous form act on velocities,
-  !> those of the stiffness form on their sum.
+  !> Factor of the squared coupling. Resistances of the viscous form act on velocities, those of the
+  !> stiffness form on their sum.
   pure elemental function coupling_factor(form, density, strain) result(factor)
     integer, intent(in) :: form         !! of hourglass control
     real(wp), intent(in) :: density
@@ -222,7 +222,7 @@ contains
     end if
   end function coupling_factor
 
-  !> Step of strain, coupling included, and of hourglass control.
+  !> Stable step of strain with the coupling, and of hourglass control.
   pure elemental function coupled_step(form, coupled, pattern) result(step)
     integer, intent(in) :: form
     real(wp), intent(in) :: coupled, pattern
@@ -257,8 +257,8 @@ contains
     end do
   end subroutine form_viscous_rates
 
-  !> A triangle's third node has the place of its fourth too: the gradients whose pattern gives it
-  !> both shares and leaves none, and no hourglass.
+  !> Merge the fourth node of triangles into the third, in gradients and patterns; triangles have no
+  !> hourglass mode.
   pure subroutine join_third_nodes(inverse_mass, chunk)
     real(wp), intent(in) :: inverse_mass(chunk_size) !! of the fourth nodes
     type(element_chunk_t), intent(inout) :: chunk
@@ -289,12 +289,12 @@ contains
     end do
   end subroutine join_third_nodes
 
-  !> The sums over the nodes of axisymmetric quads. With p, q, o, t, u, w the sums of b_r^2, b_z^2,
-  !> b_r b_z, M^2, M b_r, M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where
-  !> Lambda is the largest row sum (Gershgorin) of the matrix [p o u; o q w; u w t]. In the patterns
-  !> nodes 1 and 3 have b = h -+ a, nodes 2 and 4 have -h -+ b (M: s -+ a and s -+ b), so that the
-  !> sum v and the difference d of two opposite nodes' 1/m give the weights v a + d h and v h + d a
-  !> of a pattern.
+  !> Sums over the nodes of axisymmetric quads. With p, q, o, t, u, w the sums of b_r^2, b_z^2, b_r
+  !> b_z, M^2, M b_r, M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where Lambda
+  !> is the largest row sum (Gershgorin) of the matrix [p o u; o q w; u w t]. In the patterns nodes
+  !> 1 and 3 have b = h -+ a, nodes 2 and 4 have -h -+ b (M: s -+ a and s -+ b), so that the sum v
+  !> and the difference d of 1/m of two opposite nodes give the weights v a + d h and v h + d a of a
+  !> pattern.
   pure subroutine form_sums(lame, shear, inverse_mass, stride, chunk, sums)
     real(wp), intent(in) :: lame, shear            !! lambda/rho and 2G/rho
     integer, intent(in) :: stride

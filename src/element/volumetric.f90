@@ -1,10 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Volumetric response sigma_vol = K ln(J) (Kang, Lee & Shin 2023 print the pressure, A1);
-!> equations of state of one chunk, p = A + B E with mu = 1/v - 1, and the energy that goes with
-!> them: the one place that asks for their kind; and stresses of the rate of deformation: bulk
-!> viscosity (von Neumann & Richtmyer 1950, linear term of Landshoff), compression only, and damping
-!> in proportion to stiffness (*DAMPING_PART_STIFFNESS): the elastic law with the rate of
-!> deformation in place of the strain, times a retardation time of each element, beside the stress
+!> Volumetric response sigma_vol = K ln(J) (Kang, Lee & Shin 2023 print the pressure, A1); equations
+!> of state of one chunk, p = A + B E with mu = 1/v - 1, and their energy, with the selection of the
+!> kind; stresses of the rate of deformation: bulk viscosity in compression (von Neumann & Richtmyer
+!> 1950, linear term of Landshoff), and stiffness damping (*DAMPING_PART_STIFFNESS): the elastic law
+!> with the rate of deformation in place of the strain, times a retardation time of each element
 !> (doc/theory/elements.md, "Stiffness damping").
 module volumetric_m
   use element_chunk_m, only : element_chunk_t
@@ -19,7 +18,7 @@ module volumetric_m
     add_bulk_viscosity, add_viscous_deviator, add_viscous_pressure, &
     eos_chunk_t, form_eos, advance_energy, find_stiffness, form_gruneisen, form_linear_polynomial
 
-  !> Of one chunk at one volume.
+  !> Equation of state of one chunk at given volumes.
   type :: eos_chunk_t
     real(wp), dimension(chunk_size) :: a, b             !! A (Pa) and B
     real(wp), dimension(chunk_size) :: a_slope, b_slope !! dA/dmu and dB/dmu
@@ -75,8 +74,8 @@ contains
       + w*(1.0_wp/11.0_wp + w*(1.0_wp/13.0_wp + w*(1.0_wp/15.0_wp)))))))
   end function atanh_series
 
-  !> ln(1 + stretch) to full relative precision; minus the largest number where the volume is gone
-  !> (the driver stops on the volume, not on this value).
+  !> ln(1 + stretch) to full relative precision; a large negative number where the volume is not
+  !> positive (the driver stops on the volume).
   pure elemental function log_ratio(stretch) result(y)
     real(wp), intent(in) :: stretch
     real(wp) :: y
@@ -110,17 +109,16 @@ contains
     end if
   end function volumetric_energy
 
-  !> Add q = rho l (Q1 l t^2 - Q2 c t) as a pressure where the volumetric
-  !> strain rate t < 0; l = sqrt(A). Its work is that of the mean of it and of the one before: it
-  !> acts over half of the step that it was formed from and half of the next, in which the element
-  !> may expand.
+  !> Add q = rho l (Q1 l t^2 - Q2 c t) as a pressure where the volumetric strain rate t < 0; l =
+  !> sqrt(A). The work is that of the mean of the present and the previous q: it acts over half of
+  !> the step that it was formed from and half of the next, in which the element may expand.
   pure subroutine add_bulk_viscosity(quadratic, linear, density, sound_speed, dt, chunk, last, work)
     real(wp), intent(in) :: quadratic, linear     !! Q1, Q2
     real(wp), intent(in) :: density               !! initial density
     real(wp), intent(in) :: sound_speed
     real(wp), intent(in) :: dt
     type(element_chunk_t), intent(inout) :: chunk !! pressure in and out
-    real(wp), intent(inout) :: last(chunk_size)   !! q of the step before; then the present one
+    real(wp), intent(inout) :: last(chunk_size)   !! q of the previous step in, of this one out
     real(wp), intent(out) :: work                 !! dissipated in the step
     real(wp) :: length, rate, q
     integer :: i
@@ -139,15 +137,15 @@ contains
     work = 0.5_wp*dt*work
   end subroutine add_bulk_viscosity
 
-  !> Add 2 G beta times the deviator of the rate of deformation, and the work of the mean of it and
-  !> that of the step before: a force acts over half of the step that it was formed from and half of
-  !> the next.
+  !> Add 2 G beta times the deviator of the rate of deformation, and the work of the mean of the
+  !> present and the previous stress: a force acts over half of the step that it was formed from and
+  !> half of the next.
   pure subroutine add_viscous_deviator(shear, times, area, stress, last, work)
     real(wp), intent(in) :: shear                 !! G
     real(wp), intent(in) :: times(chunk_size)     !! beta
     real(wp), intent(in) :: area(chunk_size)      !! mid-step
     type(stress_chunk_t), intent(inout) :: stress
-    real(wp), intent(inout) :: last(chunk_size, 3) !! that of the step before; then the present one
+    real(wp), intent(inout) :: last(chunk_size, 3) !! of the previous step in, of this one out
     real(wp), intent(inout) :: work
     real(wp) :: factor, third, x, y, shear_part, inverse, sum
     integer :: i
@@ -177,7 +175,8 @@ contains
     work = work + 0.5_wp*sum
   end subroutine add_viscous_deviator
 
-  !> Add K beta times the rate of the volume, and its work likewise.
+  !> Add K beta times the volumetric rate, and the work of the mean of the present and the previous
+  !> pressure.
   pure subroutine add_viscous_pressure(bulk, times, trace, area, dt, pressure, last, work)
     real(wp), intent(in) :: bulk                     !! K
     real(wp), intent(in) :: times(chunk_size)        !! beta
@@ -185,7 +184,7 @@ contains
     real(wp), intent(in) :: area(chunk_size)         !! mid-step
     real(wp), intent(in) :: dt
     real(wp), intent(inout) :: pressure(chunk_size)  !! tension positive
-    real(wp), intent(inout) :: last(chunk_size)      !! that of the step before; then the present
+    real(wp), intent(inout) :: last(chunk_size)      !! of the previous step in, of this one out
     real(wp), intent(inout) :: work
     real(wp) :: more, sum
     integer :: i
@@ -224,7 +223,7 @@ contains
   pure subroutine advance_energy(state, growth, heat, least, most, energy, pressure)
     type(eos_chunk_t), intent(in) :: state         !! at the end of the step
     real(wp), intent(in) :: growth(chunk_size)     !! v1 - v0
-    real(wp), intent(in) :: heat(chunk_size)       !! what else goes in, J per initial volume
+    real(wp), intent(in) :: heat(chunk_size)       !! other work, J per initial volume
     real(wp), intent(in) :: least(chunk_size), most(chunk_size) !! bounds of the pressure
     real(wp), intent(inout) :: energy(chunk_size), pressure(chunk_size)
     real(wp) :: start

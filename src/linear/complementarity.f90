@@ -1,68 +1,66 @@
 ! SPDX-License-Identifier: MIT
-!> Forces within bounds, low <= x <= high, with slacks s = r + W x: zero where x lies between its
-!> bounds, not below zero where x is low, not above zero where it is high. W is symmetric without
-!> negative eigenvalues: a band, and what a few columns couple, B + V V^T. Which forces are at a
-!> bound is guessed, the others are solved for, and the guess is mended until nothing is left to
-!> mend; where that goes round in circles, sweeps of Gauss-Seidel settle it. The room is kept from
-!> one problem to the next. Cholesky factors are those of a symmetric band (0:width, n), B(j + i, j)
-!> in row i of column j: of rows that depend on others the later ones are left out. LAPACK's dpbtrf
-!> gives up at the first such pivot, and in OpenBLAS its bits depend on the number of threads where
-!> the band is wide.
+!> Linear complementarity problem: forces within bounds, low <= x <= high, with slacks s = r + W x
+!> that are zero between the bounds, not negative at the lower and not positive at the upper bound.
+!> W = B + V V^T is symmetric and positive semidefinite, with a band B and a few columns V. An
+!> active set is assumed, the other forces are solved for, and the set is updated until nothing
+!> changes; where it cycles, projected Gauss-Seidel sweeps follow. Memory is reused from one problem
+!> to the next. Cholesky factors have the storage of a symmetric band (0:width, n), B(j + i, j) in
+!> row i of column j; of dependent rows the later ones are left out. (LAPACK's dpbtrf stops at the
+!> first such pivot, and the bits of OpenBLAS depend on the number of threads in wide bands.)
 module complementarity_m
   use kinds_m, only : wp
   implicit none
   private
   public :: problem_t, outcome_t, set_size, solve_complementarity, is_low, is_between, is_high
 
-  !> Where a force is.
+  !> Position of a force: lower bound, between the bounds, upper bound.
   integer, parameter :: is_low = -1, is_between = 0, is_high = 1
 
-  !> A problem, its solution and room to solve it; arrays may be longer than they have to be.
+  !> A problem, its solution and work arrays; arrays may be longer than needed.
   type :: problem_t
     integer :: n = 0                       !! forces
-    integer :: width = 0                   !! of the band
+    integer :: width = 0                   !! bandwidth of B
     integer :: n_column = 0
     real(wp), allocatable :: band(:)       !! (0:width, n) B(j + i, j) in row i of column j
     real(wp), allocatable :: column(:)     !! (n, n_column) V
     real(wp), allocatable :: r(:)          !! (n)
     real(wp), allocatable :: low(:)        !! (n) <= 0
     real(wp), allocatable :: high(:)       !! (n) >= 0
-    integer, allocatable :: at(:)          !! (n) in: guess, not between like bounds; out: where
-                                           !! each force is
-    real(wp), allocatable :: x(:)          !! (n) out: the forces
-    integer, allocatable :: place(:)       !! from here on room: (n) rows between bounds
-    integer :: n_rest = 0
-    integer, allocatable :: rest(:)        !! (n_rest) others, and those of the guess that depend on
-                                           !! others
-    logical, allocatable :: drops(:)       !! (n) of those, pivots that are zero
+    integer, allocatable :: at(:)          !! (n) position of each force: assumed in (not between
+                                           !! where the bounds are equal), found out
+    real(wp), allocatable :: x(:)          !! (n) forces out
+    integer, allocatable :: free_rows(:)   !! (n) rows between the bounds; work arrays from here on
+    integer :: n_bound = 0 !! rows at a bound, and dependent rows
+    integer, allocatable :: bound_rows(:)  !! (n_bound) these rows
+    logical, allocatable :: is_dependent(:) !! (n) rows with zero pivots
     real(wp), allocatable :: factor(:)     !! (0:width, n)
-    real(wp), allocatable :: diagonal(:)   !! (n) before the band is factorised
+    real(wp), allocatable :: diagonal(:)   !! (n) diagonal before factorisation
     real(wp), allocatable :: solved(:)     !! (n, n_column + 1)
     real(wp), allocatable :: slack(:)      !! (n)
   end type problem_t
 
-  !> What a solution has taken.
+  !> Cost of a solution.
   type :: outcome_t
-    integer :: n_pass = 0     !! guesses solved for
-    integer :: n_sweep = 0    !! sweeps, where the guesses did not settle
-    integer :: n_dropped = 0  !! forces left out of the last guess: the others do what they would
+    integer :: n_pass = 0     !! active sets solved
+    integer :: n_sweep = 0    !! Gauss-Seidel sweeps
+    integer :: n_dependent = 0 !! dependent rows left out of the last active set
   end type outcome_t
 
   integer, parameter :: most_passes = 25
   integer, parameter :: most_sweeps = 2000
-  !> Slacks are known to this part of the largest of all terms.
+  !> Round-off of slacks, as a share of the largest term.
   real(wp), parameter :: round_off = 1.0e-13_wp
-  !> Change of forces, as part of the largest, at which sweeps have settled.
-  real(wp), parameter :: settled = 1.0e-13_wp
+  !> Change of forces, as a share of the largest, at which sweeps have converged.
+  real(wp), parameter :: convergence = 1.0e-13_wp
 
-  !> Entries of a band up to which a loop over them is not worth vectors.
+  !> Band entries up to which a loop is not worth vectors.
   integer, parameter :: few = 8
-  !> Pivots below this part of their own diagonal are zero.
+  !> Share of the diagonal below which a pivot counts as zero.
   real(wp), parameter :: least_pivot = 1.0e-10_wp
 
 contains
 
-  !> Make room. What was in it is lost where it was too small.
+  !> Allocate a problem. Its content is lost where the arrays were too small.
   pure subroutine set_size(problem, n, width, n_column)
     type(problem_t), intent(inout) :: problem
     integer, intent(in) :: n, width, n_column
@@ -77,16 +75,17 @@ contains
     call provide(problem%x, n)
     if (allocated(problem%r)) then
       if (size(problem%r) == size(problem%x)) return
-      deallocate (problem%r, problem%low, problem%high, problem%at, problem%place, problem%drops, &
-        problem%rest, problem%diagonal, problem%slack)
+      deallocate (problem%r, problem%low, problem%high, problem%at, problem%free_rows, &
+        problem%is_dependent, problem%bound_rows, problem%diagonal, problem%slack)
     end if
     associate (m => size(problem%x))
       allocate (problem%r(m), problem%low(m), problem%high(m), problem%diagonal(m), &
-        problem%slack(m), problem%at(m), problem%place(m), problem%rest(m), problem%drops(m))
+        problem%slack(m), problem%at(m), problem%free_rows(m), problem%bound_rows(m), &
+        problem%is_dependent(m))
     end associate
   end subroutine set_size
 
-  !> A list with room for so many numbers, and some more where it has to be made.
+  !> Allocate a list of at least n values, with a reserve when it has to grow.
   pure subroutine provide(list, n)
     real(wp), allocatable, intent(inout) :: list(:)
     integer, intent(in) :: n
@@ -102,16 +101,16 @@ contains
   pure subroutine solve_complementarity(problem, outcome)
     type(problem_t), intent(inout) :: problem
     type(outcome_t), intent(out) :: outcome
-    logical :: is_settled
+    logical :: is_converged
     integer :: pass, i
 
     if (problem%n == 0) return
     do pass = 1, most_passes
       outcome%n_pass = pass
-      call solve_guess(problem, outcome%n_dropped)
-      call find_slacks(problem%n_rest, problem%rest, problem)
-      call mend_guess(problem, is_settled)
-      if (is_settled) return
+      call solve_active_set(problem, outcome%n_dependent)
+      call find_slacks(problem%n_bound, problem%bound_rows, problem)
+      call update_active_set(problem, is_converged)
+      if (is_converged) return
     end do
     associate (n => problem%n)
       problem%x(:n) = min(max(problem%x(:n), problem%low(:n)), problem%high(:n))
@@ -120,61 +119,61 @@ contains
       where (problem%x(:n) <= problem%low(:n)) problem%at(:n) = is_low
       where (problem%x(:n) >= problem%high(:n) .and. problem%high(:n) > problem%low(:n)) &
         problem%at(:n) = is_high
-      problem%rest(:n) = [(i, i=1, n)]
-      call find_slacks(n, problem%rest, problem)
+      problem%bound_rows(:n) = [(i, i=1, n)]
+      call find_slacks(n, problem%bound_rows, problem)
     end associate
   end subroutine solve_complementarity
 
-  !> The forces between their bounds that make their slacks zero; the others are at their bounds.
-  pure subroutine solve_guess(problem, n_dropped)
+  !> Forces between the bounds that make their slacks zero; the others are at their bounds.
+  pure subroutine solve_active_set(problem, n_dependent)
     type(problem_t), intent(inout) :: problem
-    integer, intent(out) :: n_dropped !! forces of the guess that depend on others
+    integer, intent(out) :: n_dependent !! dependent rows
     integer :: i, m
     logical :: has_bounds
 
     m = 0
-    problem%n_rest = 0
+    problem%n_bound = 0
     has_bounds = .false.
     do i = 1, problem%n
-      problem%drops(i) = .false.
+      problem%is_dependent(i) = .false.
       if (problem%at(i) == is_between) then
         problem%x(i) = 0.0_wp
         m = m + 1
-        problem%place(m) = i
+        problem%free_rows(m) = i
       else
         problem%x(i) = problem%low(i)
         if (problem%at(i) == is_high) problem%x(i) = problem%high(i)
         has_bounds = has_bounds .or. abs(problem%x(i)) > 0.0_wp
-        problem%n_rest = problem%n_rest + 1
-        problem%rest(problem%n_rest) = i
+        problem%n_bound = problem%n_bound + 1
+        problem%bound_rows(problem%n_bound) = i
       end if
     end do
-    n_dropped = 0
+    n_dependent = 0
     if (m == 0) return
-    if (has_bounds) call find_slacks(m, problem%place, problem)
+    if (has_bounds) call find_slacks(m, problem%free_rows, problem)
     do i = 1, m
-      associate (j => problem%place(i))
+      associate (j => problem%free_rows(i))
         problem%solved(i) = -problem%r(j)
         if (has_bounds) problem%solved(i) = -problem%slack(j)
       end associate
     end do
-    call gather_band_rows(m, problem%width, problem%place, problem%band, problem%factor)
-    call factorise(m, problem%width, problem%factor, problem%diagonal, problem%drops)
-    call substitute(m, problem%width, problem%factor, problem%drops, problem%solved)
+    call gather_band_rows(m, problem%width, problem%free_rows, problem%band, problem%factor)
+    call factorise(m, problem%width, problem%factor, problem%diagonal, problem%is_dependent)
+    call substitute(m, problem%width, problem%factor, problem%is_dependent, problem%solved)
     if (problem%n_column > 0) call add_columns(m, problem)
     do i = m, 1, -1
-      problem%x(problem%place(i)) = problem%solved(i)
-      if (.not. problem%drops(i)) cycle
-      n_dropped = n_dropped + 1
-      problem%rest(problem%n_rest + n_dropped) = problem%place(i)
-      problem%drops(i) = .false.
-      problem%drops(problem%place(i)) = .true.
+      problem%x(problem%free_rows(i)) = problem%solved(i)
+      if (.not. problem%is_dependent(i)) cycle
+      n_dependent = n_dependent + 1
+      problem%bound_rows(problem%n_bound + n_dependent) = problem%free_rows(i)
+      problem%is_dependent(i) = .false.
+      problem%is_dependent(problem%free_rows(i)) = .true.
     end do
-    problem%n_rest = problem%n_rest + n_dropped
-  end subroutine solve_guess
+    problem%n_bound = problem%n_bound + n_dependent
+  end subroutine solve_active_set
 
-  !> What the columns change in a solution with the band alone: y - Z (1 + V^T Z)^-1 V^T y with
-  !> Z = B^-1 V (Woodbury).
+  !> Correction of a solution with the band alone for the columns: y - Z (1 + V^T Z)^-1 V^T y with Z
+  !> = B^-1 V (Woodbury).
   pure subroutine add_columns(m, problem)
     integer, intent(in) :: m !! rows between bounds
     type(problem_t), intent(inout) :: problem
@@ -184,12 +183,13 @@ contains
     integer :: i, k, l
 
     associate (n => problem%n, width => problem%n_column - 1, column => problem%column, &
-      solved => problem%solved, place => problem%place)
+      solved => problem%solved, free_rows => problem%free_rows)
       do k = 1, problem%n_column
         do i = 1, m
-          solved(k*m + i) = column((k - 1)*n + place(i))
+          solved(k*m + i) = column((k - 1)*n + free_rows(i))
         end do
-        call substitute(m, problem%width, problem%factor, problem%drops, solved(k*m + 1:(k + 1)*m))
+        call substitute(m, problem%width, problem%factor, problem%is_dependent, solved(k*m + 1:(k &
+          + 1)*m))
       end do
       core = 0.0_wp
       do k = 1, problem%n_column
@@ -197,7 +197,8 @@ contains
           if (l > 0 .and. l < k) cycle
           total = 0.0_wp
           do i = 1, m
-            if (.not. problem%drops(i)) total = total + column((k - 1)*n + place(i))*solved(l*m + i)
+            if (.not. problem%is_dependent(i)) total = total + column((k - 1)*n + &
+              free_rows(i))*solved(l*m + i)
           end do
           if (l == 0) pushed(k) = total
           if (l == k) total = 1.0_wp + total
@@ -212,22 +213,22 @@ contains
     end associate
   end subroutine add_columns
 
-  !> Forces beyond a bound stay there, those that their slacks draw off one are freed. What depends
-  !> on others goes with them.
-  pure subroutine mend_guess(problem, is_settled)
+  !> Put forces beyond a bound to that bound, and free forces whose slack points away from it.
+  !> Dependent rows follow their slack.
+  pure subroutine update_active_set(problem, is_converged)
     type(problem_t), intent(inout) :: problem
-    logical, intent(out) :: is_settled
+    logical, intent(out) :: is_converged
     integer :: i, previous
 
-    is_settled = .true.
+    is_converged = .true.
     do i = 1, problem%n
       associate (at => problem%at(i), x => problem%x(i), slack => problem%slack(i))
         if (.not. problem%high(i) > problem%low(i)) cycle
         previous = at
-        if (problem%drops(i)) then
+        if (problem%is_dependent(i)) then
           if (slack > 0.0_wp .or. .not. (slack < 0.0_wp .or. problem%low(i) < 0.0_wp)) at = is_low
           if (slack < 0.0_wp .and. problem%high(i) < huge(1.0_wp)) at = is_high
-          is_settled = is_settled .and. at /= is_high &
+          is_converged = is_converged .and. at /= is_high &
             .and. .not. (at == is_low .and. problem%low(i) < 0.0_wp)
           cycle
         end if
@@ -240,15 +241,15 @@ contains
           if (x < problem%low(i)) at = is_low
           if (x > problem%high(i)) at = is_high
         end select
-        is_settled = is_settled .and. at == previous
+        is_converged = is_converged .and. at == previous
       end associate
     end do
-  end subroutine mend_guess
+  end subroutine update_active_set
 
-  !> r + W x of some forces; 0 where that is nothing but round-off. The others have 0.
+  !> Slacks r + W x of some forces, 0 where that is round-off; 0 for the others.
   pure subroutine find_slacks(m, list, problem)
     integer, intent(in) :: m
-    integer, intent(in) :: list(:) !! (m) these
+    integer, intent(in) :: list(:) !! (m) the rows
     type(problem_t), intent(inout) :: problem
     real(wp) :: largest, total
     integer :: k
@@ -271,7 +272,7 @@ contains
     end associate
   end subroutine find_slacks
 
-  !> r + B x of some forces.
+  !> r + B x of some rows.
   pure subroutine add_rows(m, list, n, width, band, x, r, slack)
     integer, intent(in) :: m, list(m), n, width
     real(wp), intent(in) :: band(0:width, n), x(n), r(n)
@@ -295,7 +296,7 @@ contains
     end do
   end subroutine add_rows
 
-  !> Force by force, each as the others stand, until none changes.
+  !> Projected Gauss-Seidel sweeps until the forces converge.
   pure subroutine sweep(problem, n_sweep)
     type(problem_t), intent(inout) :: problem
     integer, intent(out) :: n_sweep
@@ -324,35 +325,35 @@ contains
           x = wanted
         end associate
       end do
-      if (change <= settled*maxval(abs(problem%x(:problem%n)))) exit
+      if (change <= convergence*maxval(abs(problem%x(:problem%n)))) exit
     end do
     n_sweep = min(n_sweep, most_sweeps)
   end subroutine sweep
 
-  !> The band of some rows.
-  pure subroutine gather_band_rows(m, width, place, band, factor)
-    integer, intent(in) :: m, width, place(m)
+  !> Gather the band of some rows.
+  pure subroutine gather_band_rows(m, width, free_rows, band, factor)
+    integer, intent(in) :: m, width, free_rows(m)
     real(wp), intent(in) :: band(0:width, *)
     real(wp), intent(inout) :: factor(0:width, m)
     integer :: i, j
 
-    if (place(m) - place(1) == m - 1) then
-      ! They follow each other.
-      factor = band(:, place(1):place(m))
+    if (free_rows(m) - free_rows(1) == m - 1) then
+      ! Consecutive rows.
+      factor = band(:, free_rows(1):free_rows(m))
       return
     end if
     do j = 1, m
       do i = j, min(j + width, m)
-        if (place(i) - place(j) > width) then
+        if (free_rows(i) - free_rows(j) > width) then
           factor(i - j, j) = 0.0_wp
         else
-          factor(i - j, j) = band(place(i) - place(j), place(j))
+          factor(i - j, j) = band(free_rows(i) - free_rows(j), free_rows(j))
         end if
       end do
     end do
   end subroutine gather_band_rows
 
-  !> Cholesky factors of a band. A row whose pivot is zero takes no part.
+  !> Cholesky factors of a band. Rows with zero pivots are left out.
   pure subroutine factorise(n, width, factor, diagonal, is_zero)
     integer, intent(in) :: n, width
     real(wp), intent(inout) :: factor(0:width, n)
@@ -383,7 +384,7 @@ contains
     end do
   end subroutine factorise
 
-  !> Take a multiple of numbers off others. Few are cheaper one by one.
+  !> Subtract a multiple of some numbers from others; short lists one by one.
   pure subroutine subtract_multiple(n, multiple, these, others)
     integer, intent(in) :: n
     real(wp), intent(in) :: multiple, these(n)

@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Solves A x = b for a sparse matrix whose pattern is symmetric but for a few entries, symmetric in
-!> value or not, and says how good the answer is. The matrix is scaled so that the largest entry of
-!> every row and column is about one (Ruiz 2001): a penalty a million times stiffer than the
-!> elements then no longer hides what is soft. LU factors are those of a band where the bandwidth is
-!> small, else sparse. Theory: doc/theory/implicit.md, "Linear systems".
+!> Solution of A x = b for a sparse matrix with a nearly symmetric pattern, symmetric in value or
+!> not, with a measure of its accuracy. The matrix is equilibrated to row and column maxima of about
+!> one (Ruiz 2001), so that a penalty a million times stiffer than the elements does not hide soft
+!> modes. LU factors are banded for small bandwidths, else sparse. Theory: doc/theory/implicit.md,
+!> "Linear systems".
 module linear_solver_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use sparse_m, only : banded_lu_t, bandwidth, factor_banded, reverse_cuthill_mckee, solve_banded, &
@@ -16,59 +16,59 @@ module linear_solver_m
   private
   public :: report_t, solve_linear, method_banded, method_sparse, equilibrate
 
-  !> Where the norm of A z is below this part of that of |A||z| (A equilibrated), A takes z to zero.
-  !> Seen: 0.4e-16 to 7e-16 for rigid motions of up to 100,000 equations; 4e-15 for two
-  !> blocks pressed together by a penalty 1e12 times their stiffness, 6e-14 for a
-  !> cantilever of 2000 x 2 quads.
+  !> Ratio of the norms of A z and |A||z| (A equilibrated) below which A is singular. Observed:
+  !> 0.4e-16 to 7e-16 for rigid motions of up to 100,000 equations; 4e-15 for two blocks in contact
+  !> with a penalty 1e12 times their stiffness, 6e-14 for a cantilever of 2000 x 2 quads.
   real(wp), parameter :: singular_tolerance = 1.5e-15_wp
-  !> Up to here the errors of the factors may be all that is seen of A z, and z is corrected.
+  !> Ratio up to which errors of the factors may dominate A z, so that z is corrected.
   real(wp), parameter :: doubtful = 1.0e3_wp*singular_tolerance
-  !> Corrections of z at most.
+  !> Largest number of corrections of z.
   integer, parameter :: n_correction = 2
-  !> Largest residual of an answer.
+  !> Largest residual of a solution.
   real(wp), parameter :: residual_tolerance = 1.0e-10_wp
-  !> Steps of iterative refinement at most.
+  !> Largest number of refinement steps.
   integer, parameter :: n_refinement = 5
 
-  !> What there is to say about an answer.
+  !> Report on a solution.
   type :: report_t
-    logical :: is_solved = .false.        !! x is an answer; otherwise `message` says why not
+    logical :: is_solved = .false.        !! x is a solution; else `message` says why not
     character(:), allocatable :: method   !! in words
     integer :: bandwidth = 0              !! on either side of the diagonal, equations reordered
     integer(long) :: bytes = 0            !! memory of the factors
     logical :: is_negative = .false.      !! the determinant: an odd number of negative eigenvalues
     real(wp) :: residual = huge(1.0_wp)   !! max |b - A x| / max(|A||x| + |b|), A equilibrated
     integer :: n_refinement = 0           !! steps of iterative refinement
-    logical :: is_singular = .false.      !! a motion meets no stiffness, or next to none, ...
-    integer :: equation = 0               !! ... largest here (0: unknown); or an entry is not
-                                          !! finite
-    real(wp) :: stiffness = 0.0_wp        !! norm of A z / norm of |A||z|, z the motion that meets
-                                          !! least
+    logical :: is_singular = .false.      !! a motion has no stiffness to round-off, ...
+    integer :: equation = 0               !! ... largest at this equation (0: unknown); or an entry
+                                          !! is not finite
+    real(wp) :: stiffness = 0.0_wp        !! norm of A z / norm of |A||z|, z the motion of least
+                                          !! stiffness
     logical :: out_of_memory = .false.    !! the factors do not fit
-    character(:), allocatable :: message  !! what is wrong, in words
+    character(:), allocatable :: message  !! fault in words
   end type report_t
 
   !> Methods.
   integer, parameter :: method_banded = 1, method_sparse = 2
 
-  !> Widest band that goes to LAPACK where UMFPACK is there. Seconds to factorise on one core
-  !> (gfortran 12, reference BLAS), quads with two equations a node, banded against sparse:
-  !>   square meshes          20 x 20 (bandwidth 79)  0.003/0.002,  40 x 40 (159)  0.041/0.012,
-  !>                          100 x 100 (399)  1.35/0.13
-  !>   slender meshes         4000 x 10 (45)  0.06/0.47,  500 x 20 (85)  0.09/0.11
+  !> Largest bandwidth for LAPACK where UMFPACK is available. Seconds to factorise on one core
+  !> (gfortran 12, reference BLAS), quads with two equations a node, banded/sparse:
+  !>    square meshes          20 x 20 (bandwidth 79)  0.003/0.002,  40 x 40 (159)  0.041/0.012,
+  !>                           100 x 100 (399)  1.35/0.13
+  !>    slender meshes         4000 x 10 (45)  0.06/0.47,  500 x 20 (85)  0.09/0.11
   integer, parameter :: widest_band = 80
 
-  !> Smallest pivot that is solved with, for entries of about one: far below what rounding leaves of
-  !> a pivot that is zero, but large enough for nothing to overflow.
+  !> Smallest pivot used in a solution, for entries of about one: far below the round-off of a zero
+  !> pivot, but large enough to avoid overflow.
   real(wp), parameter :: least_pivot = 1.0e-3_wp*epsilon(1.0_wp)
 
-  !> The factors; of the two only one is filled. The sparse one is to be freed in the end.
+  !> Factors; one of the two is allocated. The sparse one must be freed.
   type :: factor_t
     integer :: method = method_banded  !! method used
-    type(banded_lu_t) :: banded        !! ordered even where the method is another
+    type(banded_lu_t) :: banded        !! ordered also for the other method
     type(umfpack_t) :: sparse
     logical :: is_negative = .false.   !! the determinant
-    logical :: has_tiny_pivot = .false. !! sparse: nothing can be solved, not even a nearby system
+    logical :: has_tiny_pivot = .false. !! sparse: cannot be solved with, not even for a perturbed
+                                        !! matrix
   end type factor_t
 
   !> Each sweep halves the exponent of what is left to scale.
@@ -76,8 +76,8 @@ module linear_solver_m
 
 contains
 
-  !> Solve. For a singular matrix x is what the factors give, its free motion large; zero
-  !> where there are no factors.
+  !> Solve. For a singular matrix x is the solution of the factors, with a large free motion; zero
+  !> without factors.
   subroutine solve_linear(matrix, b, x, report, method)
     type(sparse_t), intent(in) :: matrix    !! compressed
     real(wp), intent(in) :: b(:)            !! (n)
@@ -111,7 +111,7 @@ contains
       report%bytes = factor%sparse%bytes
     end if
     if (.not. factored) then
-      ! How much is needed, and what helps.
+      ! Memory needed, and remedy.
       report%out_of_memory = .true.
       report%message = 'the factors of '//to_text(matrix%n)//' equations ('//report%method &
         //', bandwidth '//to_text(report%bandwidth)//') need ' &
@@ -135,7 +135,7 @@ contains
     call free_umfpack(factor%sparse)
   end subroutine solve_linear
 
-  !> Every entry has to be finite, and no row or column zero.
+  !> Check that every entry is finite and no row or column is zero.
   pure subroutine check_entries(matrix, b, report)
     type(sparse_t), intent(in) :: matrix
     real(wp), intent(in) :: b(:)
@@ -160,9 +160,9 @@ contains
     if (report%is_singular) report%message = 'the matrix is singular: a row or column of it is zero'
   end subroutine check_entries
 
-  !> The motion z that meets least stiffness: one step of inverse iteration for the least singular
-  !> value, z = A^-1 A^-T s. For a singular matrix both solves grow without bound along the motion
-  !> that is free, and what remains of A z is rounding.
+  !> Motion z of least stiffness: one step of inverse iteration for the smallest singular value, z =
+  !> A^-1 A^-T s. For a singular matrix both solutions grow along the free motion, and A z is
+  !> round-off.
   subroutine find_free_motion(scaled, magnitudes, factor, column_scale, report)
     type(sparse_t), intent(in) :: scaled, magnitudes !! A and |A|
     type(factor_t), intent(in) :: factor
@@ -177,7 +177,7 @@ contains
       report%message = 'the matrix is singular'
       return
     end if
-    ! Irregular, so as not to be at right angles to a free motion, and the same in each run.
+    ! Irregular, so that it is not orthogonal to a free motion, and reproducible.
     s = [(1.0_wp + modulo(0.618033988749895_wp*real(i, wp)**2, 1.0_wp), i=1, scaled%n)]
     allocate (z(scaled%n))
     call solve_factored(factor, .true., s, z)
@@ -187,8 +187,8 @@ contains
     report%stiffness = stiffness_met(scaled, magnitudes, z)
     do i = 1, n_correction
       if (report%stiffness <= singular_tolerance .or. report%stiffness > doubtful) exit
-      ! With exact factors nothing would be left of z - A^-1 A z; with those of A + E, z is free of
-      ! A + E, and this takes away what of A z is due to E.
+      ! With exact factors z - A^-1 A z would vanish; with factors of A + E, z is a free motion of A
+      ! + E, and this removes the part of A z due to E.
       call solve_factored(factor, .false., multiply(scaled, z), s)
       s = z - s
       if (.not. maxval(abs(s)) > 0.0_wp) exit
@@ -213,8 +213,7 @@ contains
     stiffness = norm2(multiply(scaled, z))/norm2(multiply(magnitudes, abs(z)))
   end function stiffness_met
 
-  !> Solve and refine: the residual is solved for again until no equation
-  !> gains (as LAPACK's dgerfs).
+  !> Solve and refine until no equation improves (as LAPACK's dgerfs).
   subroutine solve_refined(scaled, magnitudes, factor, b, x, report)
     type(sparse_t), intent(in) :: scaled, magnitudes !! A and |A|
     type(factor_t), intent(in) :: factor
@@ -230,7 +229,7 @@ contains
     do
       residual = b - multiply(scaled, x)
       magnitude = multiply(magnitudes, abs(x)) + abs(b)
-      ! Equation by equation; those in which next to nothing happens count little.
+      ! Equation by equation, with a floor for equations with small terms.
       error = maxval(abs(residual)/(magnitude + tiny(1.0_wp) + epsilon(1.0_wp)*maxval(magnitude)))
       report%residual = maxval(abs(residual))/max(maxval(magnitude), tiny(1.0_wp))
       if (error <= epsilon(1.0_wp) .or. error > 0.5_wp*last_error) exit
@@ -245,10 +244,9 @@ contains
       report%message = 'the linear system could not be solved accurately'
   end subroutine solve_refined
 
-  !> Factorise a compressed matrix that is equilibrated. `factored` is false where memory does not
-  !> suffice. One whose sparse factors have a zero pivot is factorised again with its diagonal
-  !> changed in the last digit of one, which no entry exceeds by much: singular still, but to be
-  !> solved with.
+  !> Factorise a compressed, equilibrated matrix. `factored` is false where memory does not suffice.
+  !> A matrix with a zero pivot in its sparse factors is factorised again with a perturbed diagonal
+  !> (last digit of one): still singular, but solvable.
   subroutine factor_matrix(matrix, factor, factored, method)
     type(sparse_t), intent(in) :: matrix
     type(factor_t), intent(inout) :: factor
@@ -296,9 +294,9 @@ contains
     end if
   end subroutine solve_factored
 
-  !> scaled(i, j) = row_scale(i)*matrix(i, j)*column_scale(j), with the largest entries from
-  !> 1/4 to about 1. The scales are powers of two, so that nothing is rounded. No row and no
-  !> column may be empty or zero.
+  !> Scaled matrix row_scale(i)*matrix(i, j)*column_scale(j) with row and column maxima from 1/4 to
+  !> about 1. The scales are powers of two, so that nothing is rounded. No row or column may be
+  !> empty or zero.
   pure subroutine equilibrate(matrix, row_scale, column_scale, scaled)
     type(sparse_t), intent(in) :: matrix
     real(wp), intent(out) :: row_scale(:)    !! (n)

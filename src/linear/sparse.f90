@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Sparse square matrix, assembled from small dense blocks: entries are collected as they come and
-!> then compressed to rows, duplicates summed. LU factorisation of it as a band (LAPACK dgbtrf, row
-!> exchanges), with its equations in the order of reverse Cuthill-McKee (Cuthill & McKee 1969,
-!> George 1971) from a pseudo-peripheral equation (George & Liu 1979).
+!> Sparse square matrix, assembled from small dense blocks: entries are collected and then
+!> compressed to rows, duplicates summed. Banded LU factorisation (LAPACK dgbtrf, row exchanges)
+!> with equations in reverse Cuthill-McKee order (Cuthill & McKee 1969, George 1971) from a
+!> pseudo-peripheral equation (George & Liu 1979).
 module sparse_m
   use, intrinsic :: iso_c_binding, only : c_bool
   use kinds_m, only : wp, long
@@ -13,7 +13,7 @@ module sparse_m
   public :: sparse_t, start_matrix, add_block, compress_matrix, multiply, banded_lu_t, &
     factor_banded, solve_banded, reverse_cuthill_mckee, bandwidth
 
-  !> The matrix. Until it is compressed only the collected entries count, afterwards only the rows.
+  !> Sparse matrix: collected entries before compression, rows afterwards.
   type :: sparse_t
     integer :: n = 0                        !! rows and columns
     integer :: n_entry = 0                  !! collected entries
@@ -25,7 +25,7 @@ module sparse_m
     real(wp), allocatable :: value(:)       !! and entries
   end type sparse_t
 
-  !> A factorised matrix.
+  !> Banded LU factors.
   type :: banded_lu_t
     integer :: width = 0                !! bandwidth on either side
     integer, allocatable :: order(:)    !! (n) the equation that comes k-th
@@ -59,15 +59,14 @@ module sparse_m
 
 contains
 
-  !> An empty matrix of n rows. Memory of an earlier one is kept for use again.
+  !> Empty matrix of n rows; memory of an earlier one is reused.
   pure subroutine start_matrix(matrix, n)
     type(sparse_t), intent(inout) :: matrix
     integer, intent(in) :: n
 
     matrix%n = n
     matrix%n_entry = 0
-    ! Four quads at a node, eight columns for each of them: 32 entries an
-    ! equation, and some contact.
+    ! Four quads at a node with eight columns each: 32 entries per equation, and some contact.
     if (.not. allocated(matrix%rows)) &
       allocate (matrix%rows(40*n + 64), matrix%columns(40*n + 64), matrix%values(40*n + 64))
   end subroutine start_matrix
@@ -100,8 +99,8 @@ contains
     end do
   end subroutine add_block
 
-  !> Rows from the collected entries: two counting sorts (by column, then stably by row) and one
-  !> pass that sums duplicates in the order in which they were added.
+  !> Compress the collected entries to rows: two counting sorts (by column, then stably by row),
+  !> then duplicates are summed in the order of their addition.
   pure subroutine compress_matrix(matrix)
     type(sparse_t), intent(inout) :: matrix
     integer, allocatable :: as_entered(:), by_column(:), by_row(:)
@@ -177,13 +176,13 @@ contains
 
   !> Factorise; `factored` is false where memory does not suffice. Entry (i, j) of the ordered
   !> matrix goes to row 2 width + 1 + i - j of column j. A pivot below `least_pivot` (a singular
-  !> matrix) is set to that, so that one can solve in any case.
+  !> matrix) is set to that value, so that a solution exists.
   subroutine factor_banded(matrix, least_pivot, factor, factored)
     type(sparse_t), intent(in) :: matrix
     real(wp), intent(in) :: least_pivot
-    type(banded_lu_t), intent(inout) :: factor !! order, width and bytes are known
+    type(banded_lu_t), intent(inout) :: factor !! with order, width and bytes
     logical, intent(out) :: factored
-    integer :: place(matrix%n), i, j, k, status, w
+    integer :: new_index(matrix%n), i, j, k, status, w
 
     factored = .false.
     if (factor%bytes > available_bytes()) return
@@ -192,12 +191,12 @@ contains
     allocate (factor%band(3*w + 1, matrix%n), factor%exchange(matrix%n), stat=status)
     call expect_allocation_failure(.false._c_bool)
     if (status /= 0) return
-    place(factor%order) = [(i, i=1, matrix%n)]
+    new_index(factor%order) = [(i, i=1, matrix%n)]
     factor%band = 0.0_wp
     do i = 1, matrix%n
       do k = matrix%first(i), matrix%first(i + 1) - 1
-        j = place(matrix%column(k))
-        factor%band(2*w + 1 + place(i) - j, j) = matrix%value(k)
+        j = new_index(matrix%column(k))
+        factor%band(2*w + 1 + new_index(i) - j, j) = matrix%value(k)
       end do
     end do
     call dgbtrf(matrix%n, matrix%n, w, w, factor%band, 3*w + 1, factor%exchange, status)
@@ -226,8 +225,8 @@ contains
     x(factor%order) = ordered(:, 1)
   end subroutine solve_banded
 
-  !> order(k) is the equation that comes k-th. Two equations are neighbours where either
-  !> has an entry for the other.
+  !> order(k) is the k-th equation. Two equations are neighbours where either has an entry for the
+  !> other.
   pure function reverse_cuthill_mckee(matrix) result(order)
     type(sparse_t), intent(in) :: matrix
     integer :: order(matrix%n)
@@ -236,8 +235,8 @@ contains
     integer :: rows(size(matrix%column))
     integer :: root, start, n_done, n_found, i
 
-    ! The matrix and its transpose together, values zero: contact fills some entries on one side of
-    ! the diagonal alone, and a walk along rows would pass by such neighbours.
+    ! Pattern of the matrix and its transpose: contact fills some entries on one side of the
+    ! diagonal only.
     do i = 1, matrix%n
       rows(matrix%first(i):matrix%first(i + 1) - 1) = i
     end do
@@ -258,13 +257,13 @@ contains
     order = order(matrix%n:1:-1)
   end function reverse_cuthill_mckee
 
-  !> An equation at one end of the connected part that holds `root`: from there the walk has the
-  !> most, and so the narrowest, levels.
+  !> Equation at one end of the connected part of `root`: the walk from there has the most, and so
+  !> the narrowest, levels.
   pure subroutine find_end(matrix, root, level, found, start)
     type(sparse_t), intent(in) :: matrix
     integer, intent(in) :: root
-    integer, intent(inout) :: level(:) !! 0 for all equations of the part, now and afterwards
-    integer, intent(inout) :: found(:) !! room for its equations
+    integer, intent(inout) :: level(:) !! 0 for all equations of the part, on return too
+    integer, intent(inout) :: found(:) !! work array
     integer, intent(out) :: start
     integer :: n_found, depth, deepest, candidate
 
@@ -329,18 +328,18 @@ contains
     end do
   end subroutine sort_by_degree
 
-  !> Largest distance of an entry from the diagonal when the equations are ordered so.
+  !> Largest distance of an entry from the diagonal in the given order.
   pure function bandwidth(matrix, order) result(width)
     type(sparse_t), intent(in) :: matrix
     integer, intent(in) :: order(:) !! (n)
     integer :: width
-    integer :: place(matrix%n), i, k
+    integer :: new_index(matrix%n), i, k
 
-    place(order) = [(i, i=1, matrix%n)]
+    new_index(order) = [(i, i=1, matrix%n)]
     width = 0
     do i = 1, matrix%n
       do k = matrix%first(i), matrix%first(i + 1) - 1
-        width = max(width, abs(place(matrix%column(k)) - place(i)))
+        width = max(width, abs(new_index(matrix%column(k)) - new_index(i)))
       end do
     end do
   end function bandwidth

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Crushable foam: an elastic step of the whole stress, whose principal values are then cut to the
-!> curve of yield stress against 1 - V/V0 in compression and to the cut-off in tension.
+!> Crushable foam: an elastic step of the whole stress, whose principal values are then limited to
+!> the curve of yield stress against 1 - V/V0 in compression and to the cut-off in tension.
 module material_crushable_foam_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
@@ -11,16 +11,16 @@ module material_crushable_foam_m
   private
   public :: update_crushable_foam
 
-  !> Share by which a volume may shrink in a step; the run ends before.
+  !> Largest relative reduction of a volume in a step; the run stops before.
   real(wp), parameter :: least = -1.0_wp + 1.0e-12_wp
 
 contains
 
-  !> Advance the stress of a chunk; the work of the deviator by the trapezoidal rule.
+  !> Update the stress of a chunk; work of the deviator by the trapezoidal rule.
   pure subroutine update_crushable_foam(material, chunk, mean)
     type(material_t), intent(in) :: material
     type(stress_chunk_t), intent(inout) :: chunk
-    real(wp), intent(inout) :: mean(chunk_size) !! stress of the point, start to end
+    real(wp), intent(inout) :: mean(chunk_size) !! mean stress of the point, start in, end out
     real(wp), dimension(chunk_size) :: crush, share, growth
     real(wp) :: third, push, oxx, oyy, oxy, middle, root, half, xy, xx, yy, zz
     real(wp) :: width, slope, from
@@ -51,7 +51,7 @@ contains
       yy = push + oyy + 2.0_wp*material%shear*(chunk%dyy(i) - third)
       zz = push - (oxx + oyy) - 2.0_wp*material%shear*third
       xy = oxy + 2.0_wp*material%shear*chunk%dxy(i)
-      ! Principal values are cut, their axes stay.
+      ! Principal values are limited, their axes stay.
       middle = 0.5_wp*(xx + yy)
       half = 0.5_wp*(xx - yy)
       root = sqrt(half*half + xy*xy)

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The one place that asks for the material law.
+!> Selection of the material law.
 module material_dispatch_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
@@ -19,14 +19,14 @@ module material_dispatch_m
     column_temperature, column_damage, has_plastic_strain, &
     is_elastic, returns_radially, law_name, has_mean_dilatation
 
-  !> Columns of the history of the heated law of Johnson and Cook: rise of temperature, damage.
+  !> Columns of the history of the heated Johnson-Cook law: temperature rise, damage.
   integer, parameter :: column_temperature = 2, column_damage = 3
 
 contains
 
-  !> History values per element of a law: 0, 1 (plastic strain), 3 (and rise of temperature, damage)
-  !> or 4 (and back stress xx, yy, xy).
-  !> The first one is the plastic strain, but for a foam (`has_plastic_strain`): its mean stress.
+  !> History values per element of a law: 0, 1 (plastic strain), 3 (and temperature rise, damage) or
+  !> 4 (and back stress xx, yy, xy). The first value is the plastic strain, for foam the mean stress
+  !> (`has_plastic_strain`).
   pure function history_size(material) result(n)
     type(material_t), intent(in) :: material
     integer :: n
@@ -43,7 +43,7 @@ contains
     end select
   end function history_size
 
-  !> What a law is called where a model is told.
+  !> Name of a law in reports.
   pure function law_name(material) result(name)
     type(material_t), intent(in) :: material
     character(:), allocatable :: name
@@ -74,7 +74,7 @@ contains
     yes = history_size(material) > 0 .and. material%law /= law_crushable_foam
   end function has_plastic_strain
 
-  !> Whether a law is elasticity with a pressure K ln(J) and nothing else.
+  !> Whether a law is linear elasticity with the pressure K ln(J).
   pure function is_elastic(material) result(yes)
     type(material_t), intent(in) :: material
     logical :: yes
@@ -82,7 +82,7 @@ contains
     yes = material%law == law_elastic .and. .not. allocated(material%eos)
   end function is_elastic
 
-  !> Whether it is that with `update_j2_isotropic`, and no failure.
+  !> Whether a law is `update_j2_isotropic` with the pressure K ln(J), without failure.
   pure function returns_radially(material) result(yes)
     type(material_t), intent(in) :: material
     logical :: yes
@@ -91,7 +91,7 @@ contains
     if (yes) yes = has_no_back_stress(material) .and. .not. material%failure_strain < huge(1.0_wp)
   end function returns_radially
 
-  !> Advance the deviator of one chunk by its law.
+  !> Update the deviator of one chunk by its law.
   pure subroutine update_stress(material, chunk, history)
     type(material_t), intent(in) :: material
     type(stress_chunk_t), intent(inout) :: chunk
@@ -131,7 +131,7 @@ contains
     if (may_break) call fail(material%failure_strain, before, chunk, history(:, 1))
   end subroutine update_stress
 
-  !> Points whose plastic strain has reached that of failure carry no stress; it stays what it was.
+  !> Set the stress of failed points to zero; their plastic strain stays.
   pure subroutine fail(limit, before, chunk, plastic_strain)
     real(wp), intent(in) :: limit
     real(wp), intent(in) :: before(chunk_size) !! plastic strain at the start of the step
@@ -143,7 +143,7 @@ contains
     !$omp simd private(keep)
     do i = 1, chunk_size
       keep = merge(0.0_wp, 1.0_wp, plastic_strain(i) >= limit)
-      ! The end of the step has no share in the work then.
+      ! The stress at the end of the step does no work then.
       chunk%work(i) = chunk%work(i) - 0.5_wp*(1.0_wp - keep)*(chunk%sxx(i)*chunk%dxx(i) &
         + chunk%syy(i)*chunk%dyy(i) + 2.0_wp*chunk%sxy(i)*chunk%dxy(i))
       chunk%sxx(i) = keep*chunk%sxx(i)
@@ -153,7 +153,7 @@ contains
     end do
   end subroutine fail
 
-  !> Which points have lost their stress, and whether pressure is left to them.
+  !> Failed points, and whether they keep their pressure.
   pure subroutine find_failed(material, history, failed, keeps_pressure)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: history(chunk_size, *)
@@ -175,7 +175,7 @@ contains
 
     select case (material%law)
     case (law_elastic)
-      ! No stress reaches this surface.
+      ! Infinite yield stress.
       call tangent_of_return(material%shear, huge(1.0_wp), 0.0_wp, point)
     case (law_plastic)
       call tangent_of_return(material%shear, material%yield + material%beta*material%hardening &
@@ -185,7 +185,7 @@ contains
     end select
   end subroutine form_tangent
 
-  !> Isotropic or perfect plasticity moves no yield surface.
+  !> Whether the yield surface does not move: isotropic or perfect plasticity.
   pure function has_no_back_stress(material) result(none)
     type(material_t), intent(in) :: material
     logical :: none

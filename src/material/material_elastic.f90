@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Elastic deviator: Jaumann rate, s* = Q s Q^T + 2 G dev(D) dt (seed (A4)); and that of a fluid.
+!> Elastic deviator: Jaumann rate, s* = Q s Q^T + 2 G dev(D) dt (Kang, Lee & Shin 2023, A4); and the
+!> deviator of a fluid.
 module material_elastic_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
@@ -10,7 +11,7 @@ module material_elastic_m
 
 contains
 
-  !> Advance the deviator of a chunk by one step and leave its work (trapezoidal rule).
+  !> Update the deviator of a chunk and its work (trapezoidal rule).
   pure subroutine update_elastic(shear, chunk)
     real(wp), intent(in) :: shear              !! G
     type(stress_chunk_t), intent(inout) :: chunk !! increments in, deviator in and out, work out
@@ -34,7 +35,7 @@ contains
     end do
   end subroutine update_elastic
 
-  !> A fluid: the deviator is that of its viscosity, 2 mu dev(D), and none without.
+  !> Update the deviator of a fluid, 2 mu dev(D); zero without viscosity.
   pure subroutine update_null(viscosity, chunk)
     real(wp), intent(in) :: viscosity             !! mu, Pa s
     type(stress_chunk_t), intent(inout) :: chunk  !! increments in, deviator and work out

@@ -12,12 +12,12 @@ module material_j2_m
   private
   public :: update_j2_isotropic, update_j2_mixed, tangent_of_return, trial_mises
 
-  !> Part of the yield stress by which a point on the surface may miss it by round-off.
+  !> Round-off of a point on the yield surface, as a share of the yield stress.
   real(wp), parameter :: on_surface = 1.0e-9_wp
 
 contains
 
-  !> Advance a chunk by one step; isotropic hardening (beta = 1), no back stress.
+  !> Update a chunk; isotropic hardening (beta = 1), no back stress.
   pure subroutine update_j2_isotropic(material, chunk, plastic_strain)
     type(material_t), intent(in) :: material
     type(stress_chunk_t), intent(inout) :: chunk          !! increments in, deviator in and out,
@@ -53,7 +53,7 @@ contains
     end do
   end subroutine update_j2_isotropic
 
-  !> Advance a chunk by one step; kinematic or mixed hardening (beta < 1).
+  !> Update a chunk; kinematic or mixed hardening (beta < 1).
   pure subroutine update_j2_mixed(material, chunk, plastic_strain, axx, ayy, axy)
     type(material_t), intent(in) :: material
     type(stress_chunk_t), intent(inout) :: chunk
@@ -103,10 +103,10 @@ contains
     mises = sqrt(3.0_wp*(3.0_wp*xi(1)**2 + xi(2)**2 + xi(3)**2))
   end function trial_mises
 
-  !> Return to a surface that grows by `hardening` from `radius` R, at one point, with
-  !> its derivative: xi* is scaled by f = 1 - 3G/(3G + E_p) (1 - R/xi_v),
-  !> d(xi_v) = 3 (3 m, h, q).d(xi*)/xi_v. A point that flowed in the step before stands on the
-  !> surface when the next begins: it flows on in the first tangent, whatever its last digits.
+  !> Radial return to a surface of `radius` R with slope `hardening`, at one point, with its
+  !> derivative: xi* is scaled by f = 1 - 3G/(3G + E_p) (1 - R/xi_v), d(xi_v) = 3 (3 m, h,
+  !> q).d(xi*)/xi_v. A point that flowed in the previous step lies on the surface and has the
+  !> plastic tangent, whatever its last digits.
   pure subroutine tangent_of_return(shear, radius, hardening, point)
     real(wp), intent(in) :: shear
     real(wp), intent(in) :: radius    !! yield stress at the plastic strain at the start of the step

@@ -1,10 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Johnson and Cook's flow stress (A + B p^n)(1 + C ln r)(1 - T*^m), r = rate/rate0 not below 1, of
-!> the equivalent strain rate sqrt(2/3 d:d) of the step, or of its plastic strain rate: elastic
-!> trial stress, then radial return,
-!> the plastic strain at the end of the step being that of the flow stress. The heated law keeps a
-!> temperature (all plastic work heats) and damage (Johnson & Cook 1985).
-!> A chunk goes by in pieces of `n_lane` points; a piece in which nothing can yield is left out.
+!> Johnson-Cook flow stress (A + B p^n)(1 + C ln r)(1 - T*^m), r = rate/rate0 not below 1, of the
+!> equivalent strain rate sqrt(2/3 d:d) of the step, or of its plastic strain rate: elastic trial
+!> stress, then radial return with the plastic strain at the end of the step. The heated law has a
+!> temperature (all plastic work heats) and damage (Johnson & Cook 1985). A chunk is processed in
+!> pieces of `n_lane` points; a piece in which nothing can yield is skipped.
 module material_johnson_cook_m
   use parts_m, only : johnson_cook_t
   use kinds_m, only : wp
@@ -16,25 +15,25 @@ module material_johnson_cook_m
   private
   public :: update_johnson_cook, n_lane, find_growth
 
-  !> Points side by side: a few vectors of any width, few enough to leave out most elastic ones.
+  !> Points per piece: a few vectors of any width, few enough to skip most elastic ones.
   integer, parameter :: n_lane = 16
-  !> Below this a plastic strain counts as 0 in powers.
+  !> Plastic strain that counts as 0 in powers.
   real(wp), parameter :: least_strain = 1.0e-200_wp
-  !> Least exponent n whose power alone bounds the growth.
+  !> Smallest exponent n whose power alone bounds the growth.
   real(wp), parameter :: least_power = 0.01_wp
   integer, parameter :: most_rounds = 100
 
-  !> What is known of the growths.
+  !> State of the search for the growths.
   type :: search_t
     real(wp), dimension(n_lane) :: low, high !! bounds
-    real(wp), dimension(n_lane) :: growth    !! between them
+    real(wp), dimension(n_lane) :: growth    !! estimate between them
     real(wp), dimension(n_lane) :: is_open   !! 1, or 0 where the growth is found
   end type search_t
 
 contains
 
-  !> Advance a chunk by one step. Of the heated law the flow stress is that of the temperature at
-  !> its start, and what is broken neither flows nor carries stress.
+  !> Update a chunk. The flow stress of the heated law is that of the temperature at the start of
+  !> the step; failed points neither flow nor carry stress.
   pure subroutine update_johnson_cook(shear, flow, chunk, plastic_strain, rise, damage)
     real(wp), intent(in) :: shear                         !! G
     type(johnson_cook_t), intent(in) :: flow
@@ -61,7 +60,7 @@ contains
       if (.not. (present(rise) .and. present(damage))) cycle
       stress = whole(i:i + n_lane - 1) - 3.0_wp*shear*growth(i:i + n_lane - 1)
       call add_damage(flow, stress, chunk%mean(i), growth(i), hot, ratio, damage(i))
-      ! The work of the flow stress at the end of the step heats.
+      ! Heating by the flow stress at the end of the step.
       associate (piece => rise(i:i + n_lane - 1))
         piece = piece + flow%heat*chunk%ratio(i:i + n_lane - 1)*stress*growth(i:i + n_lane - 1)
       end associate
@@ -70,7 +69,7 @@ contains
     if (.not. present(damage)) return
     do i = 1, chunk_size
       if (damage(i) < 1.0_wp) cycle
-      ! The end of the step has no share in the work then.
+      ! The stress at the end of the step does no work then.
       chunk%work(i) = chunk%work(i) - 0.5_wp*(chunk%sxx(i)*chunk%dxx(i) &
         + chunk%syy(i)*chunk%dyy(i) + 2.0_wp*chunk%sxy(i)*chunk%dxy(i))
       chunk%sxx(i) = 0.0_wp
@@ -79,8 +78,8 @@ contains
     end do
   end subroutine update_johnson_cook
 
-  !> Whether nothing yields: neither hardening nor rates lower the flow stress, so that below A
-  !> times the factor of temperature all is elastic.
+  !> Whether nothing yields: neither hardening nor rates reduce the flow stress, so that below A
+  !> times the temperature factor all is elastic.
   pure function is_elastic(a, mises, factor) result(yes)
     real(wp), intent(in) :: a
     real(wp), intent(in) :: mises(n_lane), factor(n_lane)
@@ -96,8 +95,8 @@ contains
     yes = .not. over > 0.0_wp
   end function is_elastic
 
-  !> Equivalent strain rate of the step over the reference rate, not below 1; of the viscoplastic
-  !> form what the growth of the plastic strain is to be multiplied with.
+  !> Equivalent strain rate of the step over the reference rate, not below 1; in the viscoplastic
+  !> form the factor of the growth of the plastic strain.
   pure subroutine form_rate_ratio(flow, dt, dxx, dyy, dxy, ratio)
     type(johnson_cook_t), intent(in) :: flow
     real(wp), intent(in) :: dt
@@ -166,10 +165,9 @@ contains
   end subroutine add_damage
 
   !> Growth g of the plastic strain p in a step by the flow stress at its end, 3G g + sigma(p + g) =
-  !> q, of some points side by side, so that the compiler forms vectors of them. What a point gets
-  !> does not depend on those beside it. The left side rises with g, so that the root lies between 0
-  !> and the least of the growths that its terms alone allow: Newton's method, and halves where it
-  !> leaves the bounds known so far.
+  !> q, of some points at once for vectorisation. The result of a point does not depend on the
+  !> others. The left side rises with g, so that the root lies between 0 and the smallest of the
+  !> growths that single terms allow: Newton's method, with bisection where it leaves the bounds.
   pure subroutine find_growth(flow, shear, mises, strain, factor, ratio, growth)
     type(johnson_cook_t), intent(in) :: flow
     real(wp), intent(in) :: shear
@@ -189,15 +187,15 @@ contains
     end if
     growth = 0.0_wp
     call form_flow(flow, strain, growth, ratio, known, stress, slope)
-    ! Bounds where the trial stress is above the flow stress at the start, and what the slope there
-    ! makes of it.
+    ! Bounds where the trial stress exceeds the flow stress at the start, and the estimate by its
+    ! slope.
     search%low = 0.0_wp
     search%high = max(0.0_wp, mises - stress)/(3.0_wp*shear)
     search%growth = max(0.0_wp, mises - stress)/(3.0_wp*shear + slope)
     search%is_open = merge(1.0_wp, 0.0_wp, mises > stress)
     if (.not. any(search%is_open > 0.0_wp)) return
     call bound_by_power(flow, mises, strain, known, search)
-    ! Where the flow stress has corners, the last step of Newton's method may cross one.
+    ! At a corner of the flow stress the last Newton step may cross it.
     near = sqrt(epsilon(1.0_wp))
     if (flow%is_viscoplastic .or. flow%most_static < huge(1.0_wp) .or. flow%most < huge(1.0_wp)) &
       near = 1.0e-12_wp
@@ -246,8 +244,8 @@ contains
     end do
   end subroutine form_flow
 
-  !> Where p is smaller than g may be the slope at the start says nothing: there the start is what
-  !> B (p + g)^n alone allows, if no bound of the flow stress comes before.
+  !> Where p may be smaller than g the slope at the start is no estimate: use the growth that B (p +
+  !> g)^n alone allows, unless a bound of the flow stress applies before.
   pure subroutine bound_by_power(flow, mises, strain, factor, search)
     type(johnson_cook_t), intent(in) :: flow
     real(wp), intent(in), dimension(n_lane) :: mises, strain, factor
@@ -277,8 +275,8 @@ contains
     end associate
   end subroutine bound_by_power
 
-  !> One step of Newton's method for the points that are still open. It converges by squares, so
-  !> that the step after one below `near` g would change no digit.
+  !> One Newton step for the open points. Convergence is quadratic, so that the step after one below
+  !> `near` g would change no digit.
   pure subroutine improve(shear, mises, stress, slope, near, search)
     real(wp), intent(in) :: shear, near
     real(wp), intent(in), dimension(n_lane) :: mises, stress, slope

@@ -2,8 +2,8 @@
 !> J2 plasticity with isotropic hardening by points: elastic trial stress, then radial return. With
 !> the trial stress q and the yield stress sigma(p), the plastic strain at the end of the step
 !> solves sigma(p) + 3G p = q + 3G p_old. The left side rises from point to point and is linear
-!> between them (slopes are above -3G), so that one walk along the points finds the segment, and
-!> its line the strain: no iteration. A rate effect scales the yield stress with the total strain
+!> between them (slopes are above -3G), so that one pass over the points finds the segment and its
+!> line the strain, without iteration. A rate effect scales the yield stress with the total strain
 !> rate sqrt(D:D) of the step.
 module material_piecewise_m
   use curves_m, only : curve_value
@@ -19,7 +19,7 @@ module material_piecewise_m
 
 contains
 
-  !> Advance a chunk by one step.
+  !> Update a chunk by one step.
   pure subroutine update_piecewise(shear, hardening, chunk, plastic_strain)
     real(wp), intent(in) :: shear                         !! G
     type(hardening_t), intent(in) :: hardening
@@ -50,7 +50,7 @@ contains
     call return_to_surface(shear, mises, growth, chunk, plastic_strain)
   end subroutine update_piecewise
 
-  !> Elastic trial stress, its von Mises value, and the part of the work that the old stress does.
+  !> Elastic trial stress, its von Mises value, and the work of the old stress.
   pure subroutine form_trial(shear, chunk, mises)
     real(wp), intent(in) :: shear
     type(stress_chunk_t), intent(inout) :: chunk !! trial stress out
@@ -79,8 +79,8 @@ contains
     end do
   end subroutine form_trial
 
-  !> Growth of the plastic strain, by the same points in all slots. The walk ends
-  !> where no slot goes further.
+  !> Growth of the plastic strain with the same curve in all slots. The pass ends where no slot goes
+  !> further.
   pure subroutine grow(n, strain, stress, slope, shear, mises, plastic_strain, growth)
     integer, intent(in) :: n
     real(wp), intent(in), dimension(n) :: strain, stress, slope !! points of the curve
@@ -112,8 +112,8 @@ contains
     end do
   end subroutine grow
 
-  !> The same where each slot has its own factor on the yield stress and its
-  !> own place between the rates.
+  !> Growth of the plastic strain where each slot has its own rate: factor on the yield stress and
+  !> position between the rates of the table.
   pure subroutine grow_with_rate(hardening, n, n_rate, stress, slope, shear, rate, mises, &
       plastic_strain, growth)
     type(hardening_t), intent(in) :: hardening
@@ -151,7 +151,7 @@ contains
     end do
   end subroutine grow_with_rate
 
-  !> Between which rows of the table each slot's rate lies, and how far.
+  !> Rows of the table around each slot's rate, and the share of the upper row.
   pure subroutine find_rows(n_rate, rates, rate, low, high, share)
     integer, intent(in) :: n_rate
     real(wp), intent(in) :: rates(n_rate)
@@ -174,9 +174,9 @@ contains
     end do
   end subroutine find_rows
 
-  !> Factors on the yield stress: that of a curve, or Cowper and Symonds' 1 + (rate/C)**(1/P). The
-  !> latter is never below 1 and its power is dear, so that it is formed only where the yield
-  !> stress without it is passed.
+  !> Factors on the yield stress: of a curve, or Cowper and Symonds' 1 + (rate/C)**(1/P). The latter
+  !> is never below 1 and expensive, so it is evaluated only where the yield stress without it is
+  !> exceeded.
   pure subroutine find_factors(hardening, shear, rate, mises, plastic_strain, factor)
     type(hardening_t), intent(in) :: hardening
     real(wp), intent(in) :: shear
@@ -203,7 +203,7 @@ contains
     end if
   end subroutine find_factors
 
-  !> Scale the trial stress back and complete the work.
+  !> Scale the trial stress back to the yield surface and complete the work.
   pure subroutine return_to_surface(shear, mises, growth, chunk, plastic_strain)
     real(wp), intent(in) :: shear
     real(wp), intent(in), dimension(chunk_size) :: mises, growth
@@ -224,8 +224,8 @@ contains
     end do
   end subroutine return_to_surface
 
-  !> The same at one point, with its derivative: that of the segment on which the step ends. Of a
-  !> law without rate effect, which the deck layer sees to.
+  !> Deviator at the end of a step and its derivative at one point, for the segment on which the
+  !> step ends; without rate effect.
   pure subroutine tangent_piecewise(shear, hardening, point)
     real(wp), intent(in) :: shear
     type(hardening_t), intent(in) :: hardening

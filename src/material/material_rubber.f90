@@ -14,7 +14,7 @@ module material_rubber_m
   private
   public :: update_mooney_rivlin, update_blatz_ko
 
-  !> What a law gives of its U at the J of each slot.
+  !> Terms of U at the J of each slot.
   type :: volumetric_t
     real(wp), dimension(chunk_size) :: excess    !! 2A + 4B + J U', 0 at J = 1
     real(wp), dimension(chunk_size) :: potential !! U + (A + 2B)(J^2 - 1), 0 at J = 1
@@ -23,7 +23,7 @@ module material_rubber_m
 
 contains
 
-  !> Rubber of Mooney and Rivlin: U = C (J^-4 - 1) + D (J^2 - 1)^2, C = A/2 + B.
+  !> Mooney-Rivlin rubber: U = C (J^-4 - 1) + D (J^2 - 1)^2, C = A/2 + B.
   pure subroutine update_mooney_rivlin(rubber, chunk)
     type(rubber_t), intent(in) :: rubber
     type(stress_chunk_t), intent(inout) :: chunk
@@ -43,7 +43,7 @@ contains
     call form_hyperelastic(rubber%a, rubber%b, volumetric, chunk)
   end subroutine update_mooney_rivlin
 
-  !> Rubber of Blatz and Ko: B = 0, U = 2A (J^-m - 1)/m, m = 2 nu/(1 - 2 nu), 2A = G.
+  !> Blatz-Ko rubber: B = 0, U = 2A (J^-m - 1)/m, m = 2 nu/(1 - 2 nu), 2A = G.
   pure subroutine update_blatz_ko(rubber, chunk)
     type(rubber_t), intent(in) :: rubber
     type(stress_chunk_t), intent(inout) :: chunk
@@ -70,7 +70,7 @@ contains
   end subroutine update_blatz_ko
 
   !> Deviator, mean stress, energy and moduli. Where the dilatation is that of an element with
-  !> several points, the deviator is that of a point of volume ratio `volume`.
+  !> several points, the deviator uses the volume ratio `volume` of the point.
   pure subroutine form_hyperelastic(a, b, volumetric, chunk)
     real(wp), intent(in) :: a, b
     type(volumetric_t), intent(in) :: volumetric
@@ -104,9 +104,9 @@ contains
     call bound_stiffness(a, b, volumetric, chunk)
   end subroutine form_hyperelastic
 
-  !> Moduli G and K of which no second derivative of W along F + s L F exceeds
-  !> 2G L:L + (K - 2G/3) (tr L)^2, per present volume. In principal axes of b it is a matrix H of
-  !> the L_kk and a pair of L_12, L_21; what H has beside lambda 1 1^T is bounded by its row sums.
+  !> Moduli G and K that bound every second derivative of W along F + s L F by 2G L:L + (K - 2G/3)
+  !> (tr L)^2, per present volume. In principal axes of b it is a matrix H of the L_kk and a pair of
+  !> L_12, L_21; the part of H beside lambda 1 1^T is bounded by its row sums.
   pure subroutine bound_stiffness(a, b, volumetric, chunk)
     real(wp), intent(in) :: a, b
     type(volumetric_t), intent(in) :: volumetric

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What a material law gets and gives for one chunk, and the objective rotation that all laws share.
+!> Data of a material law for one chunk, and the objective rotation common to all laws.
 module stress_chunk_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
@@ -14,12 +14,11 @@ module stress_chunk_m
     real(wp) :: dt = 0.0_wp                          !! step
     real(wp), dimension(chunk_size) :: cosine, sine  !! of the rotation of the step
     real(wp), dimension(chunk_size) :: cos2, sin2    !! of twice that rotation
-    real(wp), dimension(chunk_size) :: sxx, syy, sxy !! deviator, s_zz = -(s_xx + s_yy); before the
-                                                     !! law the old one, turned
+    real(wp), dimension(chunk_size) :: sxx, syy, sxy !! deviator, s_zz = -(s_xx + s_yy); rotated old
+                                                     !! stress before the law
     real(wp), dimension(chunk_size) :: work          !! work of the deviator per volume in this step
-    logical :: has_hoop = .false.                    !! of an axisymmetric body: D_xx and D_yy stand
-                                                     !! above
-    real(wp), dimension(chunk_size) :: hoop          !! less the hoop rate, and this is dt times it
+    logical :: has_hoop = .false.                    !! axisymmetric: D_xx and D_yy contain
+    real(wp), dimension(chunk_size) :: hoop          !! minus the hoop rate; this is dt times it
     real(wp), dimension(chunk_size) :: mean, ratio   !! mean stress at the start of the step, V/V0
                                                      !! in its middle; only where there is an EOS
     ! What follows is there only for laws that give the pressure too. They leave the mean stress at
@@ -30,11 +29,12 @@ module stress_chunk_m
     real(wp), dimension(chunk_size) :: energy, bulk, shear
   end type stress_chunk_t
 
-  !> What the tangent of a material law gets and gives at one point. Symmetric tensors of the plane
-  !> are (mean, half difference, shear) = ((xx + yy)/2, (xx - yy)/2, xy), which a rotation leaves
-  !> apart.
+  !> Data of the tangent of a material law at one point. Symmetric plane tensors are (mean, half
+  !> difference, shear) = ((xx + yy)/2, (xx - yy)/2, xy), which a rotation does not couple to the
+  !> mean.
   type :: stress_point_t
-    real(wp) :: strain(3) = 0.0_wp          !! increment of the step, turned as the laws want it
+    real(wp) :: strain(3) = 0.0_wp          !! increment of the step, rotated into the frame of the
+                                            !! laws
     real(wp) :: cos2 = 1.0_wp, sin2 = 0.0_wp !! of twice the rotation of the step
     real(wp) :: old(3) = 0.0_wp             !! deviator at the start of the step
     real(wp) :: plastic_strain = 0.0_wp     !! at the start of the step
@@ -47,8 +47,8 @@ module stress_chunk_m
 contains
 
   !> Rotate a symmetric deviator by the rotation of the step. In the plane the update of Hughes &
-  !> Winget (1980) is a rotation by 2 atan(dt w/2), so rigid spin leaves no error whatever the step;
-  !> (A4) of Kang, Lee & Shin (2023) is its first-order form.
+  !> Winget (1980) is a rotation by 2 atan(dt w/2), so a rigid spin is exact for any step; (A4) of
+  !> Kang, Lee & Shin (2023) is its first-order form.
   pure subroutine rotate_deviator(cos2, sin2, xx, yy, xy)
     real(wp), intent(in) :: cos2(chunk_size), sin2(chunk_size)
     real(wp), intent(inout) :: xx(chunk_size), yy(chunk_size), xy(chunk_size)
@@ -67,8 +67,8 @@ contains
     end do
   end subroutine rotate_deviator
 
-  !> Deviator of a chunk out of its streams, turned by the rotation of the step as `rotate_deviator`
-  !> does: on the way, since to turn it afterwards takes 4 % of the element kernel.
+  !> Load the deviator of a chunk from its streams, rotated as by `rotate_deviator`: a separate
+  !> rotation takes 4 % of the element kernel.
   pure subroutine load_deviator(stream, stride, stress)
     integer, intent(in) :: stride
     real(wp), intent(in) :: stream(stride, *)
@@ -87,7 +87,7 @@ contains
     end do
   end subroutine load_deviator
 
-  !> Deviator of a chunk into its streams.
+  !> Store the deviator of a chunk in its streams.
   pure subroutine store_deviator(stress, stride, stream)
     type(stress_chunk_t), intent(in) :: stress
     integer, intent(in) :: stride
@@ -115,7 +115,7 @@ contains
     end do
   end function work_of_deviator
 
-  !> Turn a tensor by the rotation of the step.
+  !> Rotate a tensor by the rotation of the step.
   pure function turn(point, tensor) result(turned)
     type(stress_point_t), intent(in) :: point
     real(wp), intent(in) :: tensor(3)
@@ -125,7 +125,7 @@ contains
       point%sin2*tensor(2) + point%cos2*tensor(3)]
   end function turn
 
-  !> Change of a turned tensor with the rotation.
+  !> Derivative of a rotated tensor with respect to the rotation.
   pure function turn_rate(turned) result(rate)
     real(wp), intent(in) :: turned(3)
     real(wp) :: rate(3)

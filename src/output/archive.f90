@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> A visitor that writes components into an HDF5 file of named arrays in folders, or reads them.
-!> Arrays that are not allocated are told apart from missing ones.
+!> Visitor that writes components into an HDF5 file of named arrays in folders, or reads them.
+!> Arrays that are not allocated are distinguished from missing ones.
 !>
-!> A component that is read must have the shape that the variable has before, and must be missing
+!> A component that is read must have the shape that the variable has before, and must be absent
 !> where that is not allocated: the reader starts from a state of the same model. The first failure
-!> stays and ends the work; variables that would follow stay as they are.
+!> stays and ends the work; later variables stay unchanged.
 module archive_m
   use, intrinsic :: iso_c_binding, only : c_null_ptr, c_ptr
   use hdf5, only : hid_t, hsize_t, haddr_t, size_t, H5S_NULL_F, H5S_SIMPLE_F, &
@@ -25,18 +25,18 @@ module archive_m
   private
   public :: archive_t, is_hard, own_layout
 
-  !> Most dimensions that an array has in HDF5.
+  !> Largest number of dimensions in HDF5.
   integer, parameter :: most_dims = 32
 
-  !> What the `as_` constants stand for, for messages.
+  !> The `as_` constants in words.
   character(13), parameter :: content_names(3) = [character(13) :: 'reals', 'integers', &
     'long integers']
 
   !> An open archive.
   type, extends(visitor_t) :: archive_t
     integer(hid_t) :: id = -1              !! open file
-    logical :: is_read = .false.           !! read, else written
-    type(memory_release_t), allocatable :: releases(:) !! of what other processes have
+    logical :: is_read = .false.           !! read, else write
+    type(memory_release_t), allocatable :: releases(:) !! release the memory of other processes
   contains
     procedure :: find => find_extents
     procedure :: pass => exchange
@@ -46,7 +46,7 @@ module archive_m
 
 contains
 
-  !> Go into a folder of the archive.
+  !> Enter a folder of the archive.
   subroutine enter_folder(visitor, name)
     class(archive_t), intent(inout) :: visitor
     character(*), intent(in) :: name
@@ -60,7 +60,7 @@ contains
     visitor%folder = visitor%folder//name//'/'
   end subroutine enter_folder
 
-  !> Extents of an array in the file, the last of which may be any; `absent` where there is none.
+  !> Extents of an array in the file whose last extent may vary; `absent` where there is none.
   subroutine find_extents(visitor, item)
     class(archive_t), intent(inout) :: visitor
     type(item_t), intent(inout) :: item
@@ -76,7 +76,7 @@ contains
     if (dataset >= 0) call h5dclose_f(dataset, ignored)
   end subroutine find_extents
 
-  !> Write an array, or read it; what belongs to others is given up before the next one.
+  !> Write or read an array. Memory of other processes is released before the next one.
   subroutine exchange(visitor, item, address, starts)
     class(archive_t), intent(inout) :: visitor
     type(item_t), intent(in) :: item
@@ -96,7 +96,7 @@ contains
     end do
   end subroutine exchange
 
-  !> A text; one that is not allocated comes back empty.
+  !> Write or read a text; one that is not allocated is read as empty.
   subroutine text(archive, name, value)
     class(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
@@ -114,7 +114,7 @@ contains
     end if
   end subroutine text
 
-  !> Write an array; null when there is none.
+  !> Write an array; a null dataspace where it is not allocated.
   subroutine put_array(archive, item, values)
     class(archive_t), intent(inout) :: archive
     type(item_t), intent(in) :: item
@@ -134,8 +134,8 @@ contains
       file_type(item%content)], space, first, archive%error)
   end subroutine put_array
 
-  !> Read the values of an array of known extents. The memory is described to HDF5, which refuses a
-  !> dataset of another shape.
+  !> Read an array of known extents. HDF5 gets the memory shape and refuses a dataset of another
+  !> shape.
   subroutine get_array(archive, item, values)
     class(archive_t), intent(inout) :: archive
     type(item_t), intent(in) :: item
@@ -161,15 +161,14 @@ contains
       status_input)
   end subroutine get_array
 
-  !> Open an array of the file and compare it with what is expected: kind of numbers, shape, and
-  !> whether there is one. What differs is refused by name; links to other places or files are not
-  !> followed. A file that comes from elsewhere may hold anything: nothing of it is believed.
+  !> Open an array of the file and check type, shape and presence. Deviations are refused by name;
+  !> links to other files are not followed, since a file from elsewhere may contain anything.
   subroutine open_array(archive, item, extents, dataset)
     class(archive_t), intent(inout) :: archive
-    type(item_t), intent(in) :: item       !! with the extents that are expected; absent: no array,
-                                           !! or where it grows any extent
-    integer, intent(out) :: extents(:)     !! that were found
-    integer(hid_t), intent(out) :: dataset !! stays open; -1: nothing to read
+    type(item_t), intent(in) :: item       !! with the expected extents; absent: no array, or any
+                                           !! extent where it may vary
+    integer, intent(out) :: extents(:)     !! found
+    integer(hid_t), intent(out) :: dataset !! open; -1: nothing to read
     character(:), allocatable :: name
     integer(hsize_t) :: dims(most_dims)
     integer :: expected(size(extents)), rank, i
@@ -182,11 +181,11 @@ contains
     if (is_hard(archive, name)) call h5dopen_f(archive%id, archive%folder//name, dataset, i)
     if (dataset < 0) then
       call archive%fail('the restart file '//archive%path//' lacks '//archive%folder//name &
-        //': it was written by another version of the program, or by hand', status_input)
+        //': it was written by another version of the program or edited', status_input)
       return
     end if
     call look_at(dataset, item%content, rank, dims)
-    ! Of what grows the last extent may be another, and there may be none.
+    ! The last extent of a variable array may differ, and the array may be absent.
     expected = item%extents(:item%rank)
     may_lack = item%of == any_length .or. any(expected < 0)
     may_differ = item%of == any_length .and. (expected < 0 .or. &
@@ -204,7 +203,7 @@ contains
 
   contains
 
-    !> What is expected, in words.
+    !> The expected array in words.
     pure function expected_text() result(text)
       character(:), allocatable :: text
 
@@ -218,7 +217,7 @@ contains
 
   end subroutine open_array
 
-  !> Whether there is a name in the present folder that is no link to elsewhere.
+  !> Whether a name in the current folder exists and is a hard link.
   function is_hard(archive, name)
     class(archive_t), intent(in) :: archive
     character(*), intent(in) :: name
@@ -236,8 +235,7 @@ contains
     is_hard = status >= 0 .and. kind_of_link == H5L_TYPE_HARD_F
   end function is_hard
 
-  !> Layout of an open dataset whose values lie in the file itself; -1: they lie in outer storage,
-  !> or are those of others.
+  !> Layout of an open dataset stored in the file itself; -1: external storage or a virtual dataset.
   function own_layout(dataset) result(layout)
     integer(hid_t), intent(in) :: dataset
     integer :: layout
@@ -252,8 +250,8 @@ contains
     call h5pclose_f(creation, ignored)
   end function own_layout
 
-  !> Rank and extents of an open dataset that holds numbers of this kind as this program writes
-  !> them, all of them within the file; rank 0: it holds nothing, -1: it holds something else.
+  !> Rank and extents of an open dataset of the expected number type, stored in the file; rank 0:
+  !> empty, -1: anything else.
   subroutine look_at(dataset, content, rank, dims)
     integer(hid_t), intent(in) :: dataset
     integer, intent(in) :: content         !! one of the `as_` constants

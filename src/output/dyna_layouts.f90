@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> The layouts of DYNA's text files, byte for byte as scripts read them: one block of lines for all
-!> rows of one instant. Columns are those of `history_tables`, by their number; forces and energies
-!> per unit depth. In a layout each `@` stands for the next number and each `|` ends a line.
+!> Layouts of DYNA's text files, byte for byte as scripts read them: one block of lines for all rows
+!> of one instant. Columns are those of `history_tables`, by number; forces and energies per unit
+!> depth. In a layout each `@` stands for the next number and each `|` ends a line.
 module dyna_layouts_m
   use controls_m, only : boundary_load, boundary_body_load, boundary_pressure, &
     boundary_motion, boundary_body_motion
@@ -19,6 +19,7 @@ module dyna_layouts_m
 
   !> Labels of glstat, each with its dots.
   integer, parameter :: n_label = 19
+  !> Labels of glstat with their dots.
   character(32), parameter :: labels(n_label) = [character(32) :: &
     ' time...........................', &
     ' time step......................', &
@@ -40,13 +41,13 @@ module dyna_layouts_m
     ' global y velocity..............', &
     ' global z velocity..............']
 
-  !> Forces and energy of a node or a body, behind its number, and sums of them.
+  !> Forces and energy of a node or body, and their sums.
   character(*), parameter :: force_line = '  xforce=@   yforce=@  zforce=@   energy=@|', &
     total_line = '              xtotal=@   ytotal=@  ztotal=@   etotal=@|'
 
 contains
 
-  !> One line.
+  !> Write one line.
   subroutine put_line(file, text)
     type(line_file_t), intent(inout) :: file
     character(*), intent(in) :: text
@@ -54,7 +55,7 @@ contains
     call put_lines(file, text//new_line('a'))
   end subroutine put_line
 
-  !> Lines of a layout.
+  !> Write the lines of a layout.
   subroutine put(file, layout, values, width, n_digit)
     type(line_file_t), intent(inout) :: file
     character(*), intent(in) :: layout
@@ -81,7 +82,7 @@ contains
     call put_lines(file, text(:n))
   end subroutine put
 
-  !> A whole number at the right of `width` columns, or of as many as it needs.
+  !> A whole number, right-justified in `width` columns or as many as it needs.
   pure function number(value, width) result(text)
     real(wp), intent(in) :: value
     integer, intent(in) :: width
@@ -93,7 +94,7 @@ contains
     text = repeat(' ', max(width - n, 0))//digits(:n)
   end function number
 
-  !> What stands once at the top of a file, behind its legend.
+  !> Write the head of a file, after its legend.
   subroutine put_head(i_table, file)
     integer, intent(in) :: i_table   !! one of `table_`
     type(line_file_t), intent(inout) :: file
@@ -113,10 +114,10 @@ contains
     end select
   end subroutine put_head
 
-  !> The lines of one instant.
+  !> Write the lines of one instant.
   subroutine put_instant(i_table, control, scales, rows, file)
     integer, intent(in) :: i_table       !! one of `table_`
-    character(*), intent(in) :: control  !! what rules the step where no element does
+    character(*), intent(in) :: control  !! what determines the step where no element does
     logical, intent(in) :: scales        !! masses are scaled
     real(wp), intent(in) :: rows(:, :)   !! (n_column, n_row)
     type(line_file_t), intent(inout) :: file
@@ -171,10 +172,10 @@ contains
     end select
   end subroutine put_instant
 
-  !> Energies. DYNA counts the work of the bulk viscosity as internal energy, and what has eroded in
-  !> kinetic, internal and hourglass energy, of which the eroded lines say how much; so the lines of
-  !> these energies add up to the total but for what leap-frog adds (doc/results.md). Springs of
-  !> contact that went with elements stay with those that are there: DYNA has no line for them.
+  !> Energies. DYNA counts the work of bulk viscosity as internal energy, and eroded energy in
+  !> kinetic, internal and hourglass energy, with separate lines for the eroded parts; so the lines
+  !> add up to the total except for the leap-frog term (doc/results.md). Eroded energy of contact
+  !> springs stays with the sliding energy, since DYNA has no line for it.
   subroutine put_glstat(row, control, scales, file)
     real(wp), intent(in) :: row(:)
     character(*), intent(in) :: control
@@ -223,8 +224,8 @@ contains
     end do
   end subroutine put_nodout
 
-  !> Sums of parts; the velocity of the body is that of its centre of mass, `+mass` is the mass that
-  !> mass scaling has added. Part ids stand in eight columns or more, short ones in the first five.
+  !> Sums of parts; the rigid-body velocity is that of the centre of mass, `+mass` the mass added by
+  !> mass scaling. Part ids use at least eight columns, short ones the first five.
   subroutine put_matsum(rows, file)
     real(wp), intent(in) :: rows(:, :)
     type(line_file_t), intent(inout) :: file
@@ -245,8 +246,8 @@ contains
     end do
   end subroutine put_matsum
 
-  !> Energies of interfaces. Penalty springs act between the sides: each interface has one number,
-  !> as DYNA's single-sided contacts do, and what of it friction has dissipated.
+  !> Energies of interfaces. Penalty springs act between both sides: each interface has one number,
+  !> as DYNA's single-sided contacts have, and the dissipation by friction.
   subroutine put_sleout(rows, file)
     real(wp), intent(in) :: rows(:, :)
     type(line_file_t), intent(inout) :: file
@@ -266,8 +267,8 @@ contains
       sum(rows(7, :))], 14, 7)
   end subroutine put_sleout
 
-  !> Stress of elements. DYNA's 2D solids stand among the shells: one line for a point through the
-  !> thickness, here one in all.
+  !> Stress of elements. DYNA lists 2D solids among the shells, one line per through-thickness
+  !> point; here one per element.
   subroutine put_elout(rows, file)
     real(wp), intent(in) :: rows(:, :)
     type(line_file_t), intent(inout) :: file
@@ -288,8 +289,8 @@ contains
     end do
   end subroutine put_elout
 
-  !> Motion of rigid bodies, along global axes and along those that turn with the body, which are
-  !> the global ones at time zero.
+  !> Motion of rigid bodies, along global axes and along axes that rotate with the body and are
+  !> global at time zero.
   subroutine put_rbdout(rows, file)
     real(wp), intent(in) :: rows(:, :)
     type(line_file_t), intent(inout) :: file
@@ -321,7 +322,7 @@ contains
 
   contains
 
-    !> Three translations and three rotations a line; those of the plane.
+    !> Three translations and three rotations per line; those out of the plane are zero.
     subroutine put_motion()
       call put(file, ' displacements:  @@@@@@|    velocities:  @@@@@@| accelerations:  @@@@@@|', &
         [(values(:2, k), zero, zero, zero, values(3, k), k=1, 3)], 12, 4)
@@ -329,7 +330,7 @@ contains
 
   end subroutine put_rbdout
 
-  !> Loads, pressures or prescribed motions with their sums; nothing where there are none.
+  !> Loads, pressures or prescribed motions with their sums, if there are any.
   subroutine put_section(title, conditions, rows, file)
     character(*), intent(in) :: title
     integer, intent(in) :: conditions(:)
@@ -354,7 +355,7 @@ contains
     call put(file, total_line, total, 13, 4)
   end subroutine put_section
 
-  !> Forces of groups of nodes, and their sums. The rows of a group come together.
+  !> Forces of node groups, and their sums. Rows of a group are consecutive.
   subroutine put_nodfor(rows, file)
     real(wp), intent(in) :: rows(:, :)
     type(line_file_t), intent(inout) :: file

@@ -1,9 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Small helpers over HDF5 for restart files and the results file, which are the only other places
-!> that see an HDF5 status; and how this program opens the library.
+!> HDF5 helpers for restart files and the results file, and the set-up of the library.
 !>
-!> Here `error` is carried along: a procedure that is handed an error does nothing, so that a
-!> sequence of calls needs one question at its end.
+!> `error` is passed along: a procedure that receives an error does nothing, so that a sequence of
+!> calls needs one test at its end.
 module hdf5_writing_m
   use, intrinsic :: iso_c_binding, only : c_ptr, c_loc, c_associated, c_char, c_int, c_null_char, &
     c_size_t
@@ -30,7 +29,7 @@ module hdf5_writing_m
     text_attribute, write_text, read_text, check_status, memory_type, file_type, open_library, &
     end_of_file
 
-  !> A dataset that grows by whole rows.
+  !> Dataset that grows by whole rows.
   type :: growing_t
     integer(hid_t) :: id = -1                !! open dataset
     character(:), allocatable :: name        !! for messages
@@ -39,8 +38,8 @@ module hdf5_writing_m
     integer(long) :: n_row = 0               !! rows so far
   end type growing_t
 
-  !> Bytes that HDF5 takes for itself and a small file. It crashes while it is opened, and while it
-  !> makes a file, where memory is refused (1.10.8).
+  !> Memory that HDF5 needs for itself and a small file, bytes. HDF5 1.10.8 crashes if memory is
+  !> refused while it is opened or creates a file.
   integer(c_size_t), parameter :: own_memory = 4*1024**2
 
   interface
@@ -52,8 +51,7 @@ module hdf5_writing_m
       integer(c_int) :: status
     end function c_setenv
 
-    !> How long a file is once all of it is written (there is no Fortran name for it); < 0 on
-    !> failure.
+    !> Length of a file once all of it is written (no Fortran interface exists); < 0 on failure.
     function c_get_eoa(id, length) bind(c, name='H5Fget_eoa') result(status)
       import :: c_int, haddr_t, hid_t
       integer(hid_t), value :: id
@@ -64,9 +62,9 @@ module hdf5_writing_m
 
 contains
 
-  !> Open the library; harmless when it is open. HDF5's lock is switched off unless the user's
-  !> environment says otherwise: viewers may open files while the run still writes them, and these
-  !> may live on network file systems without locks.
+  !> Open the library; harmless if it is open. HDF5's file locks are switched off unless the
+  !> environment sets them: viewers may open files while the run writes them, also on network file
+  !> systems without locks.
   subroutine open_library(status)
     integer, intent(out) :: status !! < 0 on failure
     integer :: ignored, second
@@ -80,7 +78,7 @@ contains
     status = min(status, second)
   end subroutine open_library
 
-  !> How long an open file will be when all that waits is written, bytes; 0 where HDF5 can not tell.
+  !> Length of an open file once all buffers are written, bytes; 0 where HDF5 gives none.
   function end_of_file(id) result(length)
     integer(hid_t), intent(in) :: id
     integer(haddr_t) :: length
@@ -92,7 +90,7 @@ contains
   subroutine check_status(status, what, error)
     integer, intent(in) :: status                       !! of the call, < 0 on failure
     character(*), intent(in) :: what                    !! file and dataset
-    type(error_t), allocatable, intent(inout) :: error  !! kept when there is one already
+    type(error_t), allocatable, intent(inout) :: error  !! kept if there is one already
 
     if (status >= 0 .or. allocated(error)) return
     call raise(error, 'cannot write '//what//' (is the disk full, or a quota used up?)', &
@@ -141,8 +139,8 @@ contains
     call check_status(status, name, error)
   end subroutine make_group
 
-  !> Make a dataset of no rows that grows; a chunk holds `chunk_rows` rows. It has no place in the
-  !> file's tree before `link_growing`.
+  !> Create an empty growing dataset; a chunk holds `chunk_rows` rows. It has no name in the file
+  !> before `link_growing`.
   subroutine create_growing(file, name, content, n_column, chunk_rows, dataset, error)
     integer(hid_t), intent(in) :: file
     character(*), intent(in) :: name                   !! for messages
@@ -177,7 +175,7 @@ contains
     call check_status(status(1), name, error)
   end subroutine create_growing
 
-  !> Give a growing dataset a name, or one more: arrays of equal content are stored once.
+  !> Link a growing dataset under a name, or under one more: equal arrays are stored once.
   subroutine link_growing(dataset, parent, name, error)
     type(growing_t), intent(in) :: dataset
     integer(hid_t), intent(in) :: parent
@@ -190,7 +188,7 @@ contains
     call check_status(status, name, error)
   end subroutine link_growing
 
-  !> Append rows and keep the dataset open.
+  !> Append rows; the dataset stays open.
   subroutine append_rows(dataset, n_row, values, error)
     type(growing_t), intent(inout) :: dataset
     integer, intent(in) :: n_row                       !! rows to append
@@ -213,7 +211,7 @@ contains
     if (.not. allocated(error)) dataset%n_row = dataset%n_row + n_row
   end subroutine append_rows
 
-  !> Rows of a growing dataset, in the file and in memory.
+  !> Select rows of a growing dataset, in the file and in memory.
   subroutine select_rows(dataset, first, n_row, space, memory, status)
     type(growing_t), intent(in) :: dataset
     integer(long), intent(in) :: first                 !! rows before
@@ -234,12 +232,11 @@ contains
     status = minval(each)
   end subroutine select_rows
 
-  !> Open a dataset of reals that has grown in a run before; it stays closed, without rows, where
-  !> there is none.
+  !> Open a growing dataset of reals of an earlier run; closed and without rows where there is none.
   subroutine open_growing(file, name, n_column, dataset)
     integer(hid_t), intent(in) :: file
     character(*), intent(in) :: name                   !! path
-    integer, intent(in) :: n_column                    !! that it should have
+    integer, intent(in) :: n_column                    !! expected columns
     type(growing_t), intent(out) :: dataset
     integer(hsize_t) :: dims(2), most(2)
     integer(hid_t) :: space
@@ -286,7 +283,7 @@ contains
       //'the restart', status_files)
   end subroutine read_rows
 
-  !> Close a growing dataset; nothing happens when it is not open.
+  !> Close a growing dataset, if it is open.
   subroutine close_growing(dataset, error)
     type(growing_t), intent(inout) :: dataset
     type(error_t), allocatable, intent(inout) :: error
@@ -337,8 +334,8 @@ contains
     call h5sclose_f(space, status(1))
   end subroutine write_attribute
 
-  !> Write a text as an attribute of a group: of exactly its length in ASCII (as VTK wants its own),
-  !> or of variable length in UTF-8, which Python reads as `str`.
+  !> Write a text as an attribute of a group: of fixed length in ASCII (for VTK), or of variable
+  !> length in UTF-8 (`str` in Python).
   subroutine text_attribute(file, group, name, text, fixed, error)
     integer(hid_t), intent(in) :: file
     character(*), intent(in) :: group, name
@@ -389,12 +386,12 @@ contains
     call h5tclose_f(type_id, status(1))
   end subroutine write_text
 
-  !> Read a text of any size from a scalar string dataset, whose bytes must all be stored.
+  !> Read a text from a scalar string dataset, whose bytes must all be stored.
   subroutine read_text(parent, name, text, is_good)
     integer(hid_t), intent(in) :: parent
     character(*), intent(in) :: name                   !! path below `parent`
     character(:), allocatable, intent(out), target :: text
-    logical, intent(out) :: is_good                    !! it is a text of that kind
+    logical, intent(out) :: is_good                    !! the dataset is a text of this kind
     integer(hid_t) :: dataset, type_id, space
     integer(size_t) :: length
     integer(hsize_t) :: stored

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> The histories: one CSV table per quantity (comma between values, no blanks, reals as the shortest
-!> decimals that read back as the same numbers), and a text file in DYNA's layout beside it where
-!> the deck asks for it (`<job>.glstat`, `.rcforc` and so on). A table whose output was not asked
-!> for is not made. The values are kept: the results file takes them over at the end.
+!> Histories: one CSV table per quantity (comma-separated, no blanks, reals as the shortest decimals
+!> that read back to the same numbers), and a text file in DYNA's layout where the deck asks for it
+!> (`<job>.glstat`, `.rcforc` and so on). Tables that were not asked for are not written. All values
+!> are stored for the results file.
 module history_file_m
   use build_info_m, only : version
   use controls_m, only : is_asked
@@ -32,16 +32,17 @@ module history_file_m
   type :: history_t
     integer :: i_table = 0                  !! one of `table_`
     logical :: has_mass_scaling = .false.   !! masses are scaled
-    logical, allocatable :: is_kept(:)      !! (columns of `history_tables`) those that this run has
+    logical, allocatable :: is_kept(:)      !! (columns of `history_tables`) columns of this run
     character(20), allocatable :: names(:)  !! (n_column)
     integer, allocatable :: kinds(:)        !! (n_column) `kind_` of each
     integer :: n_csv = 0                    !! columns of the CSV file, the first ones
     integer :: n_row = 0                    !! rows so far
     real(wp), allocatable :: values(:, :)   !! (n_column, capacity) all rows; integers are exact
-    type(line_file_t) :: file               !! rows are taken only while it is open
-    type(line_file_t) :: text               !! the file in DYNA's layout, where the deck asks for it
-    character(:), allocatable :: control    !! for it: what rules the step where no element does
-    integer :: n_waiting = 0                !! rows of the present instant, which wait until it is
+    type(line_file_t) :: file               !! rows are added while it is open
+    type(line_file_t) :: text               !! file in DYNA's layout, where the deck asks for it
+    character(:), allocatable :: control    !! for it: what determines the step where no element
+                                            !! does
+    integer :: n_waiting = 0                !! rows of the present instant, held until it is
                                             !! complete
     real(wp), allocatable :: waiting(:, :)  !! (columns of `history_tables`, rows of an instant)
   end type history_t
@@ -55,7 +56,7 @@ module history_file_m
 
 contains
 
-  !> The tables that were asked for and have something to write, without files.
+  !> Plan the tables that were asked for and have rows, without files.
   subroutine plan_histories(histories, model)
     type(histories_t), intent(out) :: histories
     type(model_t), intent(in) :: model
@@ -74,7 +75,7 @@ contains
     end do
   end subroutine plan_histories
 
-  !> The columns of a table, which has no rows and no file yet.
+  !> Columns of a table, without rows or file.
   subroutine plan_table(table, i_table, has_mass_scaling, erodes)
     type(history_t), intent(out) :: table
     integer, intent(in) :: i_table    !! one of `table_`
@@ -107,7 +108,7 @@ contains
     allocate (table%values(size(table%kinds), 64))
   end subroutine plan_table
 
-  !> Plan the tables and make their files, those in DYNA's layout too.
+  !> Plan the tables and create their files, also those in DYNA's layout.
   subroutine open_histories(histories, prefix, model, error)
     type(histories_t), intent(out) :: histories
     character(*), intent(in) :: prefix   !! directory and job name
@@ -129,7 +130,7 @@ contains
     end do
   end subroutine open_histories
 
-  !> Make the CSV file of a planned table and write its header.
+  !> Create the CSV file of a planned table and write its header.
   subroutine open_table(table, path, error)
     type(history_t), intent(inout) :: table
     character(*), intent(in) :: path
@@ -147,8 +148,8 @@ contains
     call flush_lines(table%file, error)
   end subroutine open_table
 
-  !> Make the file in DYNA's layout and write its head: title, program and the legend of entities,
-  !> where they have titles.
+  !> Create the file in DYNA's layout and write its head: title, program and the legend of entities
+  !> with titles.
   subroutine open_text(table, path, model, error)
     type(history_t), intent(inout) :: table
     character(*), intent(in) :: path
@@ -172,7 +173,7 @@ contains
     call flush_lines(table%text, error)
   end subroutine open_text
 
-  !> Numbers and titles of what the rows are of; nothing where there are no titles.
+  !> Write ids and titles of the entities of the rows, if there are titles.
   subroutine put_legend(table, model)
     type(history_t), intent(inout) :: table
     type(model_t), intent(in) :: model
@@ -213,7 +214,7 @@ contains
 
   contains
 
-    !> One entity; the first opens the legend.
+    !> Write one entity; the first one opens the legend.
     subroutine put_entity(id, title)
       integer, intent(in) :: id
       character(*), intent(in) :: title
@@ -229,7 +230,7 @@ contains
 
   end subroutine put_legend
 
-  !> Number of those that a table tells of.
+  !> Number of entities that a table has rows for.
   pure function n_each(model, i_table) result(n)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_table
@@ -255,7 +256,7 @@ contains
     end associate
   end function n_each
 
-  !> Take one row; nothing happens to a table that is not open.
+  !> Add one row to a table, if it is open.
   subroutine add_row(table, values)
     type(history_t), intent(inout) :: table
     real(wp), intent(in) :: values(:)   !! of all columns of `history_tables`
@@ -307,8 +308,8 @@ contains
     text = buffer(:n - 1)//new_line('a')
   end function row_text
 
-  !> Bring all rows into the files, or look only whether all that came so far could be written;
-  !> reports the first failure of any table.
+  !> Write all rows to the files, or only check that all rows so far could be written; returns the
+  !> first failure of any table.
   subroutine flush_histories(histories, is_asked, error)
     type(histories_t), intent(inout) :: histories
     logical, intent(in) :: is_asked
@@ -327,7 +328,7 @@ contains
     end do
   end subroutine flush_histories
 
-  !> Bring all rows into the files and close them; the values stay for the results file.
+  !> Write all rows and close the files; the values stay for the results file.
   subroutine close_histories(histories, error)
     type(histories_t), intent(inout) :: histories
     type(error_t), allocatable, intent(out) :: error
@@ -340,7 +341,7 @@ contains
 
   contains
 
-    !> One file; the first failure stays.
+    !> Close one file; the first failure stays.
     subroutine finish(file)
       type(line_file_t), intent(inout) :: file
       type(error_t), allocatable :: first_error
@@ -351,9 +352,8 @@ contains
 
   end subroutine close_histories
 
-  !> Its components. Tables are kept whole: the run that goes on writes them again from the first
-  !> row, so that they do not depend on what has become of the files; not those that it no longer
-  !> writes.
+  !> Visit the tables. They are stored whole: a restarted run writes them again from the first row,
+  !> whatever happened to the files; tables that it no longer writes are skipped.
   subroutine visit_histories(self, visitor)
     class(histories_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

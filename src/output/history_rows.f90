@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Rows of the history files: values in the order of the columns of `history_tables`. Rows for a
-!> table that is not open are ignored, so that a driver may hand every snapshot to every table that
-!> is due.
+!> Rows of the history files: values in the order of the columns of `history_tables`. Rows of a
+!> table that is not open are ignored, so that a driver may pass every snapshot to every due table.
 module history_rows_m
   use controls_m, only : boundary_body_load, boundary_body_motion
   use snapshot_m, only : total_energy, energy_ratio, snapshot_t, friction_result_t
@@ -23,7 +22,7 @@ contains
   !> Append the rows of an instant to a table.
   subroutine append_rows(table, i_table, model, shot)
     type(history_t), intent(inout) :: table
-    integer, intent(in) :: i_table   !! which it is, one of `table_`
+    integer, intent(in) :: i_table   !! one of `table_`
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in) :: shot
     integer :: i, k, n
@@ -63,7 +62,7 @@ contains
 
   contains
 
-    !> Resultant of one side.
+    !> Add the resultant of one side.
     subroutine add_side(id, side, force, n_active)
       integer, intent(in) :: id, n_active
       real(wp), intent(in) :: side, force(2)
@@ -73,10 +72,10 @@ contains
 
   end subroutine append_rows
 
-  !> One row of a table that has one for each of what it tells of, behind its time.
+  !> One row, without its time, of a table with one row per entity.
   pure function row_of(i_table, i, model, shot) result(row)
     integer, intent(in) :: i_table
-    integer, intent(in) :: i         !! which of them
+    integer, intent(in) :: i         !! the entity
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in) :: shot
     real(wp), allocatable :: row(:)
@@ -96,14 +95,14 @@ contains
         end associate
       case (table_rbdout)
         associate (body => shot%bodies(i))
-          row = [real(model%parts(model%rigids(i)%part)%id, wp), body%place, body%displacement, &
+          row = [real(model%parts(model%rigids(i)%part)%id, wp), body%position, body%displacement, &
             body%velocity, body%acceleration, cycle]
         end associate
       case (table_elout)
         associate (element => shot%history_elements(i))
           row = [real(model%mesh%element_id(plan%history_elements(i)), wp), element%stress, &
             element%plastic_strain, cycle, real(element%part, wp), &
-            merge(1.0_wp, 0.0_wp, element%is_gone)]
+            merge(1.0_wp, 0.0_wp, element%is_eroded)]
         end associate
       case (table_nodout)
         node = plan%history_nodes(i)
@@ -141,7 +140,7 @@ contains
     end associate
   end function row_of
 
-  !> Nodes of the slaves.
+  !> Append the rows of slave nodes.
   subroutine append_slaves(table, model, shot)
     type(history_t), intent(inout) :: table
     type(model_t), intent(in) :: model

@@ -1,14 +1,14 @@
 ! SPDX-License-Identifier: MIT
-!> A restart file: an HDF5 archive behind a head of 512 bytes of text, which HDF5 skips:
+!> Restart file: an HDF5 archive after a head of 512 bytes of text, which HDF5 skips:
 !>
-!>     slideline restart <format>
-!>     length 123456
-!>     checksum 89ABCDEF
+!>    slideline restart <format>
+!>    length 123456
+!>    checksum 89ABCDEF
 !>
-!> Length and CRC-32 are those of the bytes behind the head. They are compared before HDF5 sees the
-!> file, so that damage never reaches it. The file is written aside as `<path>.part`, its head last,
-!> is forced onto the disk, and then takes its name in one step: under the name there is always a
-!> whole file, after a power failure too.
+!> Length and CRC-32 are those of the bytes after the head. They are checked before HDF5 opens the
+!> file, so that HDF5 never reads a damaged one. The file is written as `<path>.part`, its head
+!> last, forced onto the disk, and then renamed in one step: a file of the final name is always
+!> complete, also after a power failure.
 module restart_file_m
   use hdf5, only : hid_t, hsize_t, H5P_FILE_CREATE_F, H5F_ACC_TRUNC_F, H5F_ACC_RDONLY_F, &
     H5F_SCOPE_LOCAL_F, h5fcreate_f, h5fopen_f, h5fclose_f, h5fflush_f, h5pcreate_f, h5pclose_f, &
@@ -26,8 +26,8 @@ module restart_file_m
   private
   public :: create_restart, finish_restart, open_restart, close_restart
 
-  !> Layout of the file. To be raised when a component of the state comes, goes or changes its
-  !> meaning, and when nodes or elements get another order: arrays lie in that order.
+  !> Format of the file. To be raised when a component of the state is added, removed or changes its
+  !> meaning, and when nodes or elements get another order.
   integer, parameter :: format_version = 26
   character(*), parameter :: mark = 'slideline restart '
   !> Bytes of the head, and of a block that is read.
@@ -35,7 +35,7 @@ module restart_file_m
 
 contains
 
-  !> Begin a restart file that will be `path`.
+  !> Create the restart file that becomes `path`.
   subroutine create_restart(path, archive)
     character(*), intent(in) :: path
     type(archive_t), intent(out) :: archive
@@ -60,8 +60,8 @@ contains
       //' (no directory, no permission or no space)', status_files)
   end subroutine create_restart
 
-  !> Bring the file to the disk, write its head and give it its name. After a failure the file that
-  !> had the name stays.
+  !> Force the file to the disk, write its head and rename it. After a failure an existing file of
+  !> that name stays.
   subroutine finish_restart(archive, error)
     type(archive_t), intent(inout) :: archive
     type(error_t), allocatable, intent(out) :: error
@@ -70,7 +70,7 @@ contains
 
     if (.not. allocated(archive%error)) then
       call h5fflush_f(archive%id, H5F_SCOPE_LOCAL_F, status)
-      ! A file that could not be flushed is left: closing it would make HDF5 try again, and crash.
+      ! A file that could not be flushed stays open: closing it would make HDF5 try again and crash.
       if (status >= 0) call h5fclose_f(archive%id, status)
       if (status < 0) call archive%fail('cannot write '//archive%path &
         //' (is the disk full, or a quota used up?)', status_files)
@@ -80,7 +80,7 @@ contains
     if (.not. allocated(archive%error)) &
       call rename_file(archive%path//unfinished, archive%path, archive%error)
     if (.not. allocated(archive%error)) then
-      ! The new name too; a file system that can not do so has the file all the same.
+      ! The directory entry too; file systems without this have the file all the same.
       call force_to_disk(folder_of(archive%path), ignored)
       return
     end if
@@ -90,7 +90,7 @@ contains
     call remove_file(archive%path//unfinished, ignored)
   end subroutine finish_restart
 
-  !> Write the head, length and checksum of what follows it, and read it back.
+  !> Write the head with length and checksum, and read it back.
   subroutine write_head(path, error)
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
@@ -109,7 +109,7 @@ contains
     if (.not. allocated(reason)) then
       read (unit, iostat=status) found
       if (status /= 0 .or. n_byte /= length + head_size .or. found /= head) &
-        reason = 'its head can not be read back'
+        reason = 'its head cannot be read back'
       close (unit, iostat=status)
     end if
     if (allocated(reason)) call raise(error, 'cannot write '//path//': '//reason, status_files)
@@ -127,10 +127,10 @@ contains
     head = mark//to_text(format_version)//n//'length '//trim(digits)//n//'checksum '//checksum//n
   end function head_text
 
-  !> Checksum of a file behind its head; `reason` is set when it can not be read.
+  !> Checksum of a file after its head; `reason` is set if it cannot be read.
   subroutine file_checksum(path, length, checksum, reason)
     character(*), intent(in) :: path
-    integer(long), intent(out) :: length    !! bytes that count
+    integer(long), intent(out) :: length    !! bytes after the head
     character(:), allocatable, intent(out) :: checksum
     character(:), allocatable, intent(out) :: reason
     integer(long) :: sum_of_bytes
@@ -152,12 +152,12 @@ contains
       call add_bytes(sum_of_bytes, block(:n))
       start = start + n
     end do
-    if (status /= 0) reason = 'it can not be read'
+    if (status /= 0) reason = 'it cannot be read'
     close (unit, iostat=status)
     checksum = checksum_text(sum_of_bytes)
   end subroutine file_checksum
 
-  !> Open a file to read its bytes; `reason` is set when it can not be opened.
+  !> Open a file to read its bytes; `reason` is set if it cannot be opened.
   subroutine open_bytes(path, unit, n_byte, reason)
     character(*), intent(in) :: path
     integer, intent(out) :: unit
@@ -169,13 +169,13 @@ contains
     open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
       action='read', iostat=status)
     if (status /= 0) then
-      reason = 'it can not be opened'
+      reason = 'it cannot be opened'
     else
       inquire (unit=unit, size=n_byte)
     end if
   end subroutine open_bytes
 
-  !> Open a restart file for reading; one that is not whole or not ours is refused with the reason.
+  !> Open a restart file for reading; an incomplete or foreign file is refused with the reason.
   subroutine open_restart(path, archive, error)
     character(*), intent(in) :: path
     type(archive_t), intent(out) :: archive
@@ -191,13 +191,13 @@ contains
     if (.not. allocated(reason)) then
       call open_library(status)
       if (status >= 0) call h5fopen_f(path, H5F_ACC_RDONLY_F, archive%id, status)
-      if (status < 0) reason = 'HDF5 can not open it'
+      if (status < 0) reason = 'HDF5 cannot open it'
     end if
     if (allocated(reason)) call raise(error, 'the restart file '//path//' is refused: '//reason, &
       status_input)
   end subroutine open_restart
 
-  !> Why a file is no restart file to go on from; `reason` stays unset when it is one.
+  !> Why a file is no valid restart file; `reason` stays unset if it is one.
   subroutine check_file(path, reason)
     character(*), intent(in) :: path
     character(:), allocatable, intent(out) :: reason
@@ -208,7 +208,7 @@ contains
 
     head = ''
     if (is_endless(path)) then
-      reason = 'it is empty, or a pipe or a device and no file'
+      reason = 'it is empty, or not a regular file'
       return
     end if
     call open_bytes(path, unit, n_byte, reason)
@@ -220,7 +220,7 @@ contains
     if (n_byte > 0) read (unit, iostat=status) head(:min(n_byte, int(head_size, long)))
     close (unit)
     if (status /= 0 .or. n_byte == 0) then
-      reason = 'it is empty or can not be read'
+      reason = 'it is empty or cannot be read'
     else if (index(head, mark) /= 1) then
       reason = 'it is not a restart file of slideline'
       if (head(2:4) == 'HDF') reason = reason//', but another HDF5 file'
@@ -237,12 +237,12 @@ contains
     else
       call file_checksum(path, length, checksum, reason)
       if (allocated(reason) .or. head == head_text(length, checksum)) return
-      reason = 'it is damaged (its checksum is '//checksum//', not that of its head)'
+      reason = 'it is damaged (its checksum '//checksum//' differs from that in its head)'
       i = index(head, 'length ')
       if (i == 0) return
       read (head(i + 7:), *, iostat=status) expected
       if (status /= 0 .or. expected == length) return
-      reason = 'it is damaged (it has another length than its head says)'
+      reason = 'it is damaged (its length differs from that in its head)'
       if (length < expected) reason = 'it is truncated'
     end if
   end subroutine check_file

@@ -1,12 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> The results file as a whole: the HDF5 file, its growing arrays and their layout; and what is
-!> written once: mesh and ids, in deck order, what is known of the run, the histories.
+!> The HDF5 results file, its growing arrays and their layout, and data written once: mesh and ids
+!> in deck order, run data, histories.
 !>
-!> The layout keeps the file readable whenever the process is killed. What a viewer trusts is the
-!> number of rows below Steps and the attribute NSteps: their headers lie side by side within a
-!> page, so that HDF5 changes all of them with one write. Everything else of a state reaches the
-!> file before, into rows that nobody looks at yet; tables of chunks lie within a page each and do
-!> not split as long as no more states come than the deck plans.
+!> The layout keeps the file readable whenever the process is killed. A viewer relies on the number
+!> of rows below Steps and the attribute NSteps: their headers lie within one page, so that HDF5
+!> changes all of them with one write. All other data of a state reach the file before, in rows that
+!> are not yet counted; chunk tables lie within a page each and do not split as long as no more
+!> states come than planned.
 module results_arrays_m
   use, intrinsic :: iso_c_binding, only : c_loc
   use, intrinsic :: iso_fortran_env, only : int8
@@ -34,8 +34,8 @@ module results_arrays_m
     run_info_t, write_mesh, write_run, write_histories, deck_order, deck_nodes, cell_nodes, &
     cell_starts, utf8_text
 
-  !> What a model has where a field is in its file: anything; friction or ties that shear; a round
-  !> body; a material with a memory of heat; elements that may leave the mesh.
+  !> Condition for a field in the file: none; friction or ties; axisymmetric; a material with
+  !> temperature; erosion.
   integer, parameter :: of_all = 1, of_shear = 2, of_axisym = 3, of_heat = 4, of_erosion = 5
 
   !> A field of points or cells.
@@ -43,11 +43,12 @@ module results_arrays_m
     character(26) :: name     !! below /VTKHDF
     integer :: n_column       !! 0: one number
     logical :: of_cells
-    integer :: needs          !! one of the above
+    integer :: needs          !! one of the conditions above
   end type field_t
 
   !> Fields, in the order in which a state writes them.
   integer, parameter :: n_field = 17
+  !> Fields, in the order of writing.
   type(field_t), parameter :: fields(n_field) = [ &
     field_t('Points', 3, .false., of_all), &
     field_t('PointData/displacement', 3, .false., of_all), &
@@ -70,31 +71,30 @@ module results_arrays_m
   integer, parameter :: n_step_array = 5, step_values = 1, step_points = 2, step_cells = 3, &
     step_zeros = 4, step_ones = 5
 
-  !> Chunks that the planned states fill of the 64 in one table of HDF5, and a size that a table
-  !> is not below.
+  !> Chunks of the planned states in one HDF5 table of 64, and the least size of a table.
   integer, parameter :: chunks_per_table = 52
   integer(hsize_t), parameter :: table_size = 2048, page_size = 4096
-  !> Bytes that a chunk reaches where the states allow, and that it cannot exceed in HDF5.
+  !> Bytes that a chunk reaches where the number of states allows, and the limit of HDF5.
   integer(long), parameter :: small_chunk = 65536, large_chunk = 2_long**32 - 1
-  !> Rows per chunk of the arrays below Steps, at least: a row that needs a new chunk appears with
-  !> several writes.
+  !> Least rows per chunk of the arrays below Steps: a row that needs a new chunk takes several
+  !> writes.
   integer, parameter :: least_step_rows = 1024
-  !> Rows of a field that are put together for one write: they stay in the cache until then.
+  !> Rows of a field per write, which stay in the cache.
   integer, parameter :: block_rows = 16384
-  !> Bound on the number of states that is planned for.
+  !> Largest number of planned states.
   integer, parameter :: most_planned = 4096
 
   !> An open results file.
   type :: results_file_t
     character(:), allocatable :: path
-    logical :: is_named = .false.               !! it has its own name
+    logical :: is_named = .false.               !! it has its final name
     logical :: is_broken = .false.              !! a write failed: left as it is, never closed
-    type(file_facts_t) :: facts                 !! as the last flush left it
+    type(file_facts_t) :: facts                 !! state of the file after the last flush
     integer(hid_t) :: id = -1                   !! open file
     integer(hid_t) :: n_steps = -1              !! open attribute NSteps
     integer(long) :: n_state = 0                !! states in the file
     real(wp), allocatable :: times(:)           !! (n_state or more) their times
-    integer, allocatable :: which(:)            !! fields that the file has
+    integer, allocatable :: which(:)            !! fields of this run
     type(growing_t) :: fields(n_field)
     type(growing_t) :: steps(n_step_array)
     real(wp), allocatable :: rows(:)            !! (3*rows, at most block_rows) of one write
@@ -103,7 +103,7 @@ module results_arrays_m
   !> VTK's numbers of the cell types.
   integer(int8), parameter :: vtk_triangle = 5, vtk_quad = 9
 
-  !> What the file says of the run.
+  !> Data of the run.
   type :: run_info_t
     character(:), allocatable :: title          !! of the deck
     character(:), allocatable :: deck           !! file name of the deck
@@ -118,8 +118,8 @@ module results_arrays_m
 
 contains
 
-  !> Number of states that the deck asks for; a guess when the interval varies. It only sizes the
-  !> pieces of the file: more states fit.
+  !> Number of states that the deck asks for, estimated for a varying interval. It sizes the chunks;
+  !> more states fit.
   pure function planned_states(controls) result(n)
     type(controls_t), intent(in) :: controls
     integer :: n
@@ -131,8 +131,8 @@ contains
     end associate
   end function planned_states
 
-  !> States that share a chunk of a field: the planned ones fit into one table of chunks, and the
-  !> chunks of a small mesh are no crumbs.
+  !> States per chunk of a field: the planned ones fit into one chunk table, and chunks of a small
+  !> mesh are not too small.
   pure function states_per_chunk(n_row, n_planned) result(n)
     integer, intent(in) :: n_row       !! nodes or elements
     integer, intent(in) :: n_planned   !! states
@@ -145,9 +145,9 @@ contains
     n = int(max(1_long, min(int(n, long), large_chunk/state_size)))
   end function states_per_chunk
 
-  !> Make the HDF5 file. What keeps it whole at every instant: no chunk waits in a cache; a table of
-  !> chunks lies within a page, so that it changes with one write; tables of groups are small, so
-  !> that all of Steps lies within a page.
+  !> Create the HDF5 file. To stay valid at every instant no chunk is cached, a chunk table lies
+  !> within a page and changes with one write, and group tables are small, so that all of Steps lies
+  !> within a page.
   subroutine create_file(file, error)
     type(results_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(out) :: error
@@ -181,7 +181,7 @@ contains
     call h5pclose_f(access, status(2))
   end subroutine create_file
 
-  !> Make the arrays of points and fields.
+  !> Create the arrays of points and fields.
   subroutine create_fields(file, tree, mesh, n_planned)
     type(results_file_t), intent(inout) :: file
     type(archive_t), intent(inout) :: tree             !! the file in the group /VTKHDF
@@ -202,10 +202,10 @@ contains
     end do
   end subroutine create_fields
 
-  !> Make the group Steps with its arrays and the attribute NSteps, which stays open. Arrays of
-  !> equal content are one dataset with many names. The five headers and the attribute are made in
-  !> one go before anything is linked: so they lie side by side within the first page of the file
-  !> and HDF5 brings them out with one write, which is what makes the appearance of a state atomic.
+  !> Create the group Steps with its arrays and the attribute NSteps, which stays open. Equal arrays
+  !> are one dataset with several names. The five headers and the attribute are created before
+  !> anything is linked, so that they lie within the first page and HDF5 writes them at once: a
+  !> state appears atomically.
   subroutine create_steps(file, tree, n_planned)
     type(results_file_t), intent(inout) :: file
     type(archive_t), intent(inout) :: tree             !! the file in the group /VTKHDF
@@ -289,7 +289,7 @@ contains
 
   end subroutine write_mesh
 
-  !> Index of the node that came k-th in the deck; the order of the mesh when it was not renumbered.
+  !> Node in deck position k; the mesh order if it was not renumbered.
   pure function deck_order(mesh) result(order)
     type(mesh_t), intent(in) :: mesh
     integer :: order(mesh%n_node)
@@ -297,7 +297,7 @@ contains
     order = deck_nodes(mesh, 1, mesh%n_node)
   end function deck_order
 
-  !> The same of `n` nodes from the k-th on.
+  !> Nodes in the `n` deck positions from `k` on.
   pure function deck_nodes(mesh, k, n) result(nodes)
     type(mesh_t), intent(in) :: mesh
     integer, intent(in) :: k, n
@@ -311,8 +311,8 @@ contains
     end if
   end function deck_nodes
 
-  !> Where the nodes of each cell start in the list of `cell_nodes`, from zero, and its length at
-  !> the end. A triangle repeats its third node in the mesh and has three entries in the list.
+  !> Start of the nodes of each cell in the list of `cell_nodes`, from zero, and its length at the
+  !> end. A triangle repeats its third node in the mesh and has three entries in the list.
   pure function cell_starts(element_nodes) result(starts)
     integer, intent(in) :: element_nodes(:, :)   !! (4, n_element)
     integer :: starts(size(element_nodes, 2) + 1)
@@ -324,7 +324,7 @@ contains
     end do
   end function cell_starts
 
-  !> Points of all cells, one cell after the other, counted from zero in the order of the deck.
+  !> Points of all cells, cell by cell, counted from zero in deck order.
   pure function cell_nodes(mesh) result(points)
     type(mesh_t), intent(in) :: mesh
     integer, allocatable :: points(:)
@@ -370,8 +370,7 @@ contains
 
   end subroutine write_run
 
-  !> The text in UTF-8: characters of UTF-8 pass, and a byte that belongs to none is taken for
-  !> Latin-1 (decks are either).
+  !> The text in UTF-8; bytes that are no UTF-8 are read as Latin-1.
   pure function utf8_text(text) result(utf8)
     character(*), intent(in) :: text
     character(:), allocatable :: utf8
@@ -397,8 +396,8 @@ contains
     utf8 = buffer(:n_byte)
   end function utf8_text
 
-  !> Write all tables below /history, which is there, one dataset a column; nothing of one that was
-  !> never planned. Columns that no CSV file has go below /dyna.
+  !> Write all planned tables below /history, one dataset per column; columns without CSV go below
+  !> /dyna.
   subroutine write_histories(file, histories)
     type(archive_t), intent(inout) :: file             !! open, at its root
     type(histories_t), intent(in) :: histories

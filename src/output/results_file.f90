@@ -1,13 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> The results file `<job>.vtkhdf`: states that VTK, ParaView and PyVista read (VTKHDF 2.0,
-!> transient unstructured grid), the histories and what is known of the run. The layout is described
-!> in doc/results.md; the files of this folder and the reader of the Python tools are the only
-!> places that know it.
+!> Results file `<job>.vtkhdf`: states for VTK, ParaView and PyVista (VTKHDF 2.0, transient
+!> unstructured grid), histories and run data. The layout is described in doc/results.md; only this
+!> folder and the reader of the Python tools depend on it.
 !>
-!> The mesh is stored once; each state appends rows to the arrays. All of a state is handed to the
-!> system before the file says that it is there: whenever the process is killed, the file opens with
-!> the states before (see results_arrays_m). A restart takes the states before it over from the file
-!> that the run has left: into a new one, which then replaces the old one in one step.
+!> The mesh is stored once; each state appends rows to the arrays. All data of a state are handed to
+!> the system before they are counted: whenever the process is killed, the file opens with the
+!> states before (see results_arrays_m). A restart copies the states before it from the file of the
+!> earlier run into a new one, which then replaces the old one in one step.
 module results_file_m
   use, intrinsic :: iso_c_binding, only : c_loc
   use archive_m, only : archive_t, is_hard, own_layout
@@ -35,15 +34,15 @@ module results_file_m
 
 contains
 
-  !> Make the file with the mesh and without a state. It has its own name from the first state on,
-  !> and `<path>.part` before, so that what stands under the name always opens. A file of that name
-  !> from an earlier run is removed, unless its states are going to be taken over.
+  !> Create the file with the mesh and without a state. It has its final name from the first state
+  !> on, and `<path>.part` before, so that a file of the final name always opens. A file of that
+  !> name from an earlier run is removed, unless its states are taken over.
   subroutine open_results(file, path, model, run_info, is_restart, error)
     type(results_file_t), intent(out) :: file
     character(*), intent(in) :: path
     type(model_t), intent(in) :: model
     type(run_info_t), intent(in) :: run_info
-    logical, intent(in) :: is_restart   !! a restart: what stands under the name stays for now
+    logical, intent(in) :: is_restart   !! an existing file stays for now
     type(error_t), allocatable, intent(out) :: error
     type(archive_t) :: tree
     integer(long), target :: version(2)
@@ -78,10 +77,10 @@ contains
     call move_alloc(tree%error, error)
     call publish(file, error)
     allocate (file%rows(3*min(max(model%mesh%n_node, model%mesh%n_element), block_rows)))
-    call note_failure(file, error)
+    call mark_broken(file, error)
   end subroutine open_results
 
-  !> Append one state and bring it into the file whole.
+  !> Append one state and make it visible as a whole.
   subroutine append_state(file, model, snapshot, error)
     type(results_file_t), intent(inout), target :: file
     type(model_t), intent(in) :: model
@@ -93,10 +92,10 @@ contains
     call append_fields(file, model, snapshot, error)
     call append_instant(file, model, snapshot%time, error)
     call give_final_name(file, error)
-    call note_failure(file, error)
+    call mark_broken(file, error)
   end subroutine append_state
 
-  !> Make a state of the rows that have been appended to the fields.
+  !> Count the rows that have been appended to the fields as a state.
   subroutine append_instant(file, model, instant, error)
     type(results_file_t), intent(inout) :: file
     type(model_t), intent(in) :: model
@@ -120,7 +119,7 @@ contains
     call publish(file, error)
   end subroutine append_instant
 
-  !> Give the file its own name.
+  !> Rename the file to its final name.
   subroutine give_final_name(file, error)
     type(results_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(inout) :: error
@@ -130,8 +129,8 @@ contains
     file%is_named = .not. allocated(error)
   end subroutine give_final_name
 
-  !> Append the fields, nodes in deck order; what is missing is zero. Stress is xx yy zz xy yz xz,
-  !> of axisymmetric bodies zz is the hoop stress.
+  !> Append the fields, nodes in deck order; missing components are zero. Stress is xx yy zz xy yz
+  !> xz, in axisymmetric models zz is the hoop stress.
   subroutine append_fields(file, model, snapshot, error)
     type(results_file_t), intent(inout), target :: file
     type(model_t), intent(in) :: model
@@ -158,7 +157,7 @@ contains
     end do
   end subroutine append_fields
 
-  !> Rows of a field at some nodes or elements. Mises stress is sqrt(3/2 s:s).
+  !> Rows of a field at some nodes or elements. Von Mises stress is sqrt(3/2 s:s).
   pure subroutine gather_rows(name, places, model, shot, rows)
     character(*), intent(in) :: name
     integer, intent(in), contiguous :: places(:)
@@ -200,7 +199,7 @@ contains
     end select
   end subroutine gather_rows
 
-  !> Rows of values at some places; columns beyond the components stay as they are, and all where
+  !> Gather values at some nodes or elements; columns beyond the components stay, and all where
   !> there are no values.
   pure subroutine gather(places, n_component, n_column, rows, values)
     integer, intent(in), contiguous :: places(:)
@@ -215,7 +214,7 @@ contains
     end do
   end subroutine gather
 
-  !> Say how many states the file has, and bring that into the file.
+  !> Write the number of states and flush the file.
   subroutine publish(file, error)
     type(results_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(inout) :: error
@@ -229,7 +228,7 @@ contains
     call flush_file(file, error)
   end subroutine publish
 
-  !> Whether the file still stands under its name as the last flush has left it.
+  !> Check that the file still exists under its name and is as the last flush left it.
   subroutine check_untouched(file, error)
     type(results_file_t), intent(in) :: file
     type(error_t), allocatable, intent(inout) :: error
@@ -240,11 +239,11 @@ contains
     if (.not. is_same_file(now, file%facts)) then
       call raise(error, 'it has been removed or renamed during the run', status_files)
     else if (now%n_byte /= file%facts%n_byte) then
-      call raise(error, 'somebody else has changed it during the run', status_files)
+      call raise(error, 'another process has changed it during the run', status_files)
     end if
   end subroutine check_untouched
 
-  !> The name that the file has now.
+  !> Current name of the file.
   pure function present_path(file) result(path)
     type(results_file_t), intent(in) :: file
     character(:), allocatable :: path
@@ -253,8 +252,8 @@ contains
     if (.not. file%is_named) path = path//unfinished
   end function present_path
 
-  !> Hand all that waits to the system. HDF5 writes how long the file is before it makes it so long:
-  !> where that is refused (a largest file size) the states before could not be read any more.
+  !> Flush the file. HDF5 writes the length of the file before it extends it: if that is refused
+  !> (file size limit), earlier states could not be read. So the file is extended first.
   subroutine flush_file(file, error)
     type(results_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(inout) :: error
@@ -269,19 +268,18 @@ contains
     file%facts = facts_of_name(present_path(file))
   end subroutine flush_file
 
-  !> After a failure: put the file's name before the message, and leave the file as the last flush
-  !> left it, with the states before. Closing it would make HDF5 try again, and crash.
-  subroutine note_failure(file, error)
+  !> After a failure put the file name before the message and leave the file as the last flush left
+  !> it. Closing it would make HDF5 try again and crash.
+  subroutine mark_broken(file, error)
     type(results_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(inout) :: error
 
     if (.not. allocated(error)) return
     error%message = file%path//': '//error%message
     file%is_broken = .true.
-  end subroutine note_failure
+  end subroutine mark_broken
 
-  !> Write the histories and close the file; nothing happens when it is not open or a write has
-  !> failed.
+  !> Write the histories and close the file, if it is open and no write has failed.
   subroutine finish_results(file, histories, error)
     type(results_file_t), intent(inout) :: file
     type(histories_t), intent(in) :: histories
@@ -310,11 +308,11 @@ contains
       call h5close_f(status)
     end if
     call give_final_name(file, error)
-    call note_failure(file, error)
+    call mark_broken(file, error)
   end subroutine finish_results
 
-  !> Whether there is a results file to take states over from. One that does not hold the states of
-  !> these times is an error: it is of another run, and would be lost.
+  !> Check for a results file to take states from. A file without the states of these times is an
+  !> error: it belongs to another run and would be lost.
   subroutine check_old_results(path, n_node, times, found, error)
     character(*), intent(in) :: path
     integer, intent(in) :: n_node
@@ -352,13 +350,14 @@ contains
       call close_growing(array, error)
     end do
     if (status >= 0) call h5fclose_f(id, status)
-    if (.not. (fits .or. allocated(error))) call raise(error, path//' does not hold the states ' &
-      //'before the restart: it is of another run, or damaged; move it away, or give another ' &
-      //'folder by d=', status_input)
+    if (.not. (fits .or. allocated(error))) call raise(error, &
+      path//' does not contain the states ' &
+      //'before the restart: it belongs to another run or is damaged; move it, or choose another ' &
+      //'folder with d=', status_input)
   end subroutine check_old_results
 
-  !> Open an array of a results file, if it is there. One that lies elsewhere is refused: in another
-  !> file, by a link or as a virtual dataset, or in outer storage. It would get into the results of
+  !> Open an array of a results file, if it exists. An array stored elsewhere (link to another file,
+  !> virtual dataset, external storage) is refused, since it would be copied into the results of
   !> this run.
   subroutine open_own(id, name, path, array, error)
     integer(hid_t), intent(in) :: id       !! open file
@@ -385,12 +384,12 @@ contains
     if (is_own) return
     call close_growing(array, ignored)
     call raise(error, path//' is refused: its '//name//' is not stored in it, but a link, a ' &
-      //'virtual dataset or outer storage; move it away, or give another folder by d=', &
+      //'virtual dataset or external storage; move it, or choose another folder with d=', &
       status_input)
   end subroutine open_own
 
-  !> Copy the states of these times from the file under the name of the new one, which then takes
-  !> the name. The old file must have passed `check_old_results`.
+  !> Copy the states of these times from the old file into the new one, which then takes its name.
+  !> The old file must have passed `check_old_results`.
   subroutine copy_states(file, model, times, error)
     type(results_file_t), intent(inout) :: file
     type(model_t), intent(in) :: model
@@ -423,7 +422,7 @@ contains
     end do
     call h5fclose_f(old, status)
     call give_final_name(file, error)
-    call note_failure(file, error)
+    call mark_broken(file, error)
   end subroutine copy_states
 
 end module results_file_m

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> A buffer from the first of several processes to all others, or to one of them.
+!> Transfer of a packed item from the first process to one or all other processes.
 module buffer_transfer_m
   use packed_buffer_m, only : packed_buffer_t, start_packing, start_unpacking
   use kinds_m, only : wp
@@ -9,16 +9,16 @@ module buffer_transfer_m
   private
   public :: send_item, all_ranks
 
-  !> In place of a receiver: all.
+  !> Receiver: all processes.
   integer, parameter :: all_ranks = 0
 
 contains
 
-  !> What the first process has of an item, into that of the receiver.
+  !> Copy an item of the first process to the receiver, packed into one buffer.
   subroutine send_item(ranks, receiver, buffer, item)
     type(ranks_t), intent(inout) :: ranks
-    integer, intent(in) :: receiver           !! `all_ranks` or one of the others
-    type(packed_buffer_t), intent(inout) :: buffer !! empty: whole or a range
+    integer, intent(in) :: receiver           !! `all_ranks` or the number of one process
+    type(packed_buffer_t), intent(inout) :: buffer !! empty: packs all of the item, or a range of it
     class(visited_t), intent(inout) :: item
     real(wp) :: n(1)
 
@@ -41,7 +41,7 @@ contains
 
   contains
 
-    !> Values of the first process for the receiver.
+    !> Send values of the first process to the receiver.
     subroutine share(values)
       real(wp), intent(inout) :: values(:)
       real(wp) :: nothing(1)

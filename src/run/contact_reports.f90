@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What the run says about its interfaces at its start and at its end.
+!> Log of the interfaces at the start and at the end of a run.
 module contact_reports_m
   use contact_facets_m, only : report_facets
   use error_indicator_m, only : parts_at_surfaces, of_noise
@@ -19,24 +19,25 @@ module contact_reports_m
   private
   public :: report_contact_start, report_contact_end
 
-  !> By which a step may miss the bound that its penalty was made for (PUNIT 3).
+  !> Round-off of the step bound that an automatic penalty (PUNIT 3) was chosen for.
   real(wp), parameter :: round_off = 1.0e-12_wp
-  !> Springs that store more than this many times what the elements beside them do are soft.
+  !> Springs that store more than this multiple of the elements' energy are soft.
   real(wp), parameter :: soft = 2.0_wp
-  !> Waves are told where they are more than a tenth of the square of the estimate.
+  !> Waves are reported where the static part of the squared estimate is below this share.
   real(wp), parameter :: wave_share = 0.9_wp
-  !> Part of the internal energy of the bodies from which on what springs stored is told.
+  !> Share of the internal energy of the bodies above which stored spring energy is reported.
   real(wp), parameter :: noticed_part = 0.1_wp
-  !> Compliance of springs, over that of a row of elements on either side, below which stiffer ones
-  !> take little away; a penalty that is named goes to half of it at most.
+  !> Compliance of springs over that of a row of elements on either side, below which stiffer
+  !> springs gain little; an advised penalty goes to half of it at most.
   real(wp), parameter :: stiff = 0.5_wp
-  !> Ratio of bulk moduli from which on one body is hard beside the other: 10, less round-off.
+  !> Ratio of bulk moduli that makes one body hard against the other: 10, less round-off.
   real(wp), parameter :: much_harder = 9.999_wp
 
 contains
 
-  !> Initial penetrations, and in explicit runs where the penalty demands a smaller step than
-  !> `state%dt`: a warning, unless it is the built-in penalty and the step need not be too large.
+  !> Report initial penetrations and, in explicit runs, penalties that require a smaller step than
+  !> `state%dt`. A warning, except for the default penalty where the violation lies within the
+  !> uncertainty of the bound.
   subroutine report_contact_start(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -65,17 +66,17 @@ contains
         else if (.not. model%controls%implicit%is_on) then
           limit = closed_step(element_limit, bounds(i))
           if (state%dt > limit*(1.0_wp + round_off)) call warn(log, 'interface ' &
-            //to_text(contact%id)//': with its ties the stable step is '//to_text(limit) &
-            //', the step is '//to_text(state%dt)//' (ECDT 1 of *CONTROL_CONTACT leaves springs ' &
-            //'out of it): the run may gain energy without bound')
+            //to_text(contact%id)//': the time step '//to_text(state%dt)//' exceeds the ' &
+            //'stability limit of its ties '//to_text(limit)//' (ECDT 1 of *CONTROL_CONTACT ' &
+            //'ignores springs): energy may grow without bound')
         end if
       end associate
     end do
   end subroutine report_contact_start
 
-  !> A step that obeys the springs of an interface; or one that is too large for them: which bound
-  !> asks for what, the node and the penalty that would fit. No warning of the built-in penalty,
-  !> which nobody has made larger, where the step need not be too large.
+  !> Report the step limit of the springs of an interface: that the step follows it, or that the
+  !> step exceeds it, with node, bound and the penalty that would be stable. No warning for the
+  !> default penalty where the violation lies within the uncertainty of the bound.
   subroutine report_step_limit(model, state, i, element_limit, bound, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -90,25 +91,25 @@ contains
     name = 'interface '//to_text(model%contacts(i)%id)//': '
     associate (contact => model%contacts(i), dt => state%dt, &
       limit => stable_step(element_limit, bound))
-      if (state%contacts(i)%rules_step) call write_log(log, name//'the step obeys its springs, ' &
-        //'since the deck leaves penalty and step to the program: stable step '//to_text(limit) &
-        //', of the elements alone '//to_text(element_limit)//'; a penalty of ' &
+      if (state%contacts(i)%rules_step) call write_log(log, name//'the time step ' &
+        //'follows its springs, since penalty and step have their defaults: stable step ' &
+        //to_text(limit)//', of the elements alone '//to_text(element_limit)//'; a penalty of ' &
         //to_text(fitting_scale(model%controls%dt_scale*element_limit, element_limit, bound)) &
-        //' times this one would fit the step of the elements')
+        //' times this one would be stable at the step of the elements')
       if (dt <= limit*(1.0_wp + round_off)) return
       is_usual = contact%penalty_unit == penalty_factor &
         .and. max(contact%penalty, contact%master_penalty) <= 1.0_wp &
         .and. model%controls%penalty_scale <= default%penalty_scale
       if (.not. dt < element_limit) then
-        call warn(log, name//'the time step '//to_text(dt)//' lies above the limit of the ' &
-          //'elements '//to_text(element_limit)//' and leaves no room for contact springs')
+        call warn(log, name//'the time step '//to_text(dt)//' exceeds the stability limit ' &
+          //'of the elements '//to_text(element_limit)//' and admits no contact springs')
       else if (is_usual .and. dt*sharpness <= limit) then
-        call write_log(log, name//'the step '//to_text(dt)//' is above '//to_text(limit) &
-          //', the bound of '//binding_bound(element_limit, bound)//', by less than that may be ' &
-          //'too low for the built-in penalty; ECDT 2 of *CONTROL_CONTACT, or ' &
-          //to_text(fitting_scale(dt, element_limit, bound))//' times the penalty, keeps to it')
+        call write_log(log, name//'the time step '//to_text(dt)//' exceeds '//to_text(limit) &
+          //', the bound of '//binding_bound(element_limit, bound)//', within the uncertainty of ' &
+          //'that bound for the default penalty; ECDT 2 of *CONTROL_CONTACT, or ' &
+          //to_text(fitting_scale(dt, element_limit, bound))//' times the penalty, satisfies it')
       else
-        call warn(log, name//'its penalty demands a time step of at most '//to_text(limit) &
+        call warn(log, name//'its penalty requires a time step of at most '//to_text(limit) &
           //', the bound of '//binding_bound(element_limit, bound)//' (while they stay closed ' &
           //to_text(closed_step(element_limit, bound))//', where they open and close ' &
           //to_text(opening_step(bound))//', elements alone '//to_text(element_limit) &
@@ -116,15 +117,14 @@ contains
           //to_text(closed_step(huge(1.0_wp), bound))//' at node ' &
           //to_text(model%mesh%node_id(bound%node))//'), the step is '//to_text(dt) &
           //'; a penalty of '//to_text(fitting_scale(dt, element_limit, bound)) &
-          //' times the present one would fit')
+          //' times the present one would be stable')
       end if
     end associate
   end subroutine report_step_limit
 
-  !> How good the answer is, of each interface that was loaded at an instant that was judged;
-  !> springs that stored much beside the bodies, and pressure that is made by facets; first contacts
-  !> that were released, ties that broke, and what friction took. Implicit springs without
-  !> compliance store nothing and have no penetration.
+  !> Report the error estimate of each interface that was loaded at a sampled instant, soft springs,
+  !> facets that govern the pressure, excluded first contacts, failed ties, and dissipation by
+  !> friction. Implicit springs without compliance store nothing.
   subroutine report_contact_end(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -160,7 +160,7 @@ contains
     end do
   end subroutine report_contact_end
 
-  !> What is known of one.
+  !> The error estimate of an interface in words.
   function words(estimate, state, i) result(text)
     type(contact_estimate_t), intent(in) :: estimate
     type(state_t), intent(in) :: state
@@ -175,21 +175,21 @@ contains
       //percent(sqrt(estimate%still), sqrt(estimate%load))
     if (estimate%rows > 0.0_wp) then
       text = text//'; springs store '//two_decimals(estimate%springs/estimate%rows) &
-        //' times what the elements beside them do'
+        //' times the energy of the elements at the surface'
       if (estimate%springs > soft*estimate%rows) text = text//', the penalty is soft'
     end if
-    if (estimate%forces > 0.0_wp) text = text//'; the force is rough by ' &
+    if (estimate%forces > 0.0_wp) text = text//'; noise of the force ' &
       //percent(sqrt(estimate%jumps/of_noise), sqrt(estimate%forces))//' between instants'
-    if (state%largest_energy > 0.0_wp) text = text//'; contact has ' &
-      //trim(merge('made', 'lost', state%contacts(i)%monitor%balance < 0.0_wp))//' ' &
+    if (state%largest_energy > 0.0_wp) text = text//'; contact ' &
+      //trim(merge('created', 'lost   ', state%contacts(i)%monitor%balance < 0.0_wp))//' ' &
       //percent(abs(state%contacts(i)%monitor%balance), state%largest_energy) &
       //' of the largest energy'
-    if (estimate%least_margin < huge(1.0_wp)) text = text//'; the step is ' &
-      //percent(1.0_wp, estimate%least_margin)//' of the stable one'
+    if (estimate%least_margin < huge(1.0_wp)) text = text//'; the time step is ' &
+      //percent(1.0_wp, estimate%least_margin)//' of the stable step'
   end function words
 
-  !> Whether a target was kept, and if not what would: another type, or else a finer mesh. Both are
-  !> known of bodies at rest: neither is sure to take away what waves make.
+  !> Whether the target was reached, and if not which type or mesh would reach it. Both follow from
+  !> static studies, so waves may need more.
   pure function target_words(contact, estimate) result(text)
     type(contact_t), intent(in) :: contact
     type(contact_estimate_t), intent(in) :: estimate
@@ -199,21 +199,20 @@ contains
 
     text = 'the target '//percent(contact%target, 1.0_wp)//' is '
     if (sqrt(estimate%misfit/estimate%load) <= contact%target) then
-      text = text//'kept'
+      text = text//'reached'
       return
     end if
-    text = text//'not kept; '
+    text = text//'not reached; '
     at_rest = sqrt(estimate%still/estimate%load)
     if (at_rest <= contact%target) then
-      text = text//'by waves, without them it is '//percent(at_rest, 1.0_wp)
+      text = text//'waves prevent it, the static part is '//percent(at_rest, 1.0_wp)
       return
     end if
     call better_type(contact%scene, contact%contact_type, at_rest, contact%target, better, &
       expected)
-    if (has_waves(estimate)) text = text//'without waves it is '//percent(at_rest, 1.0_wp) &
-      //', and then '
+    if (has_waves(estimate)) text = text//'the static part is '//percent(at_rest, 1.0_wp)//'; '
     if (expected <= contact%target) then
-      text = text//'by the published studies type '//to_text(better)//' would keep it'
+      text = text//'by the published studies type '//to_text(better)//' would reach it'
     else
       text = text//'by the published studies no type would, but elements smaller by a factor of ' &
         //two_decimals((expected/contact%target)**(1.0_wp/mesh_order))
@@ -221,7 +220,7 @@ contains
     end if
   end function target_words
 
-  !> Whether waves, the inertia of the rows, make a part of the estimate that is worth telling.
+  !> Whether inertia of the elements at the surface is a notable part of the estimate.
   elemental function has_waves(estimate) result(has)
     type(contact_estimate_t), intent(in) :: estimate
     logical :: has
@@ -229,20 +228,19 @@ contains
     has = estimate%still < wave_share*estimate%misfit
   end function has_waves
 
-  !> One interface whose springs stored much. Like bodies part as if both were softer; of a hard one
-  !> on a soft one the springs give back what the soft one would in part have kept, and the rebound
-  !> is wrong: a warning, unless the springs are stiff beside the elements, too coarse ones then.
-  !> The penalty whose springs would store no more than that part, and the step that bears it, are
-  !> named: by a given force their energy goes with the power -1 of their stiffness, by blows of a
-  !> hard block on a soft one -0.64, and less where rows are coarse: no penalty makes less what the
-  !> first row of nodes takes.
+  !> Report an interface whose springs stored much energy. Between bodies of similar stiffness the
+  !> rebound is that of softer bodies. Between a hard and a soft body the springs return energy that
+  !> the soft body would have kept in part, and the rebound is too fast: a warning, unless the
+  !> springs are stiff against the elements, which then are too coarse. The advised penalty stores
+  !> no more than the noticed share: at a given force spring energy varies with stiffness^-1, in
+  !> impacts of a hard on a soft block with stiffness^-0.64 or less on coarse meshes.
   subroutine report_soft_springs(model, contact, estimate, log)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
     type(contact_estimate_t), intent(in) :: estimate
     type(log_t), intent(inout) :: log
     character(:), allocatable :: text
-    integer, allocatable :: behind(:) !! materials of the parts behind the surfaces
+    integer, allocatable :: behind(:) !! materials of the parts at the surfaces
     real(wp) :: softest, hardest, factor, wanted
     logical :: is_wrong
     integer :: i
@@ -255,24 +253,24 @@ contains
       hardest = max(hardest, model%materials(behind(i))%bulk)
       if (model%materials(behind(i))%is_rigid) hardest = huge(1.0_wp)
     end do
-    text = 'finer elements would take more of it'
+    text = 'finer elements would store a larger part'
     if (estimate%softness > stiff) then
       factor = min((estimate%stored/(noticed_part*estimate%bodies))**2, &
         2.0_wp*estimate%softness/stiff)
       wanted = factor*contact%penalty
-      text = 'PEN '//to_text(wanted)//' would do'
-      if (contact%penalty_unit == penalty_factor) text = 'SFACT '//to_text(wanted) &
-        //', or PEN with PUNIT 2, would do'
+      text = 'use PEN '//to_text(wanted)
+      if (contact%penalty_unit == penalty_factor) text = 'use SFACT '//to_text(wanted) &
+        //', or PEN with PUNIT 2'
       if (contact%penalty_unit == penalty_share .and. wanted > 1.0_wp) text = &
-        'a penalty '//to_text(factor)//' times as large would do'
+        'use a penalty '//to_text(factor)//' times as large'
       if (.not. model%controls%implicit%is_on .and. model%controls%contact_step &
         /= contact_step_rules) text = text//', with the step of the springs (ECDT 2 of ' &
         //'*CONTROL_CONTACT)'
     end if
     is_wrong = estimate%softness > stiff .and. hardest >= much_harder*softest
-    if (is_wrong) text = 'springs give back all of it, of which the soft body would keep a part, ' &
-      //'so that the hard one goes in deeper and may rebound faster than it should; '//text
-    text = 'interface '//to_text(contact%id)//': its springs have stored up to ' &
+    if (is_wrong) text = 'the springs return all of it, of which the soft body would ' &
+      //'dissipate a part: penetration and rebound of the hard body are too large; '//text
+    text = 'interface '//to_text(contact%id)//': its springs stored up to ' &
       //to_text(estimate%stored)//', '//percent(estimate%stored, estimate%bodies) &
       //' of the largest internal energy of the bodies on both sides, ' &
       //to_text(estimate%bodies)//trim(merge(': ', '; ', is_wrong))//' '//text

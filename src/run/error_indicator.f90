@@ -1,8 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> How good the answer of each interface is, at instants that are written: from what both sides
-!> know, the pressure that contact puts on a face and the stress of the elements behind it
-!> (doc/theory/contact.md, section 8.1), and from what springs store beside the bodies that they
-!> hold apart (section 8.2).
+!> Error indicator of each interface at instants that are written: contact pressure against the
+!> stress of the elements at the surface (doc/theory/contact.md, section 8.1), and energy of the
+!> springs against that of the bodies (section 8.2).
 module error_indicator_m
   use contact_facets_m, only : follow_arcs
   use law_state_m, only : contact_estimate_t
@@ -24,16 +23,16 @@ module error_indicator_m
   private
   public :: evaluate_indicators, update_energy_peaks, parts_at_surfaces, of_noise
 
-  !> The second difference of noise that is not correlated has so many times its square.
+  !> The second difference of uncorrelated noise has 6 times its variance.
   real(wp), parameter :: of_noise = 6.0_wp
 
 contains
 
-  !> Judge all interfaces of the deck, whose results are in the snapshot.
+  !> Evaluate the indicators of all interfaces, whose resultants are in the snapshot.
   subroutine evaluate_indicators(model, state, plots, rows, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    logical, intent(in) :: plots !! rows of slave nodes are in the snapshot already
+    logical, intent(in) :: plots !! slave rows are in the snapshot already
     type(face_rows_t), intent(inout) :: rows
     type(snapshot_t), intent(inout) :: snapshot
     type(other_pressure_t), allocatable :: others(:)
@@ -55,7 +54,7 @@ contains
     if (rows%are_shared) call find_other_pressures(model, state, snapshot%slaves, others)
     do i = 1, size(model%contacts)
       contact = state%outlines(i)
-      ! What interfaces that share nodes allow together takes too long to find for every row.
+      ! The common step limit of interfaces that share nodes is too expensive for every row.
       if (.not. model%controls%implicit%is_on) then
         scale = merge(0.0_wp, 1.0_wp, model%contacts(i)%penalty_unit == penalty_implicit)
         call bound_springs(state%outlines(i:i), state%contact_mass, state%contacts(i:i), scale, &
@@ -66,10 +65,10 @@ contains
       associate (slaves => snapshot%slaves(i), result => snapshot%interfaces(i))
         call add_side(model, state, rows, contact%slave, slaves%pressure, &
           others(2*i - 1)%pressure, side, slaves%row_stress)
-        ! Of a surface with itself all is on the slave.
+        ! Self contact has slave nodes only.
         if (.not. contact%is_self) call add_side(model, state, rows, contact%master, &
           slaves%master_pressure, others(2*i)%pressure, side, unused)
-        ! Accelerations of nodes that rigid walls or common motions hold are others than these.
+        ! Accelerations of nodes at rigid walls and of coupled nodes are not known here.
         side%still = min(side%still, side%misfit)
         result%row_energy = side%rows
         result%estimate = 0.0_wp
@@ -80,17 +79,17 @@ contains
     end do
   end subroutine evaluate_indicators
 
-  !> One side: the pressure of each loaded node against that of the elements behind, the mean over
-  !> the faces next to it, each by what the node has of it. Rigid bodies have none.
+  !> Add one side: pressure of each loaded node against the mean stress of the elements at its
+  !> segments, weighted by area. Rigid bodies are left out.
   subroutine add_side(model, state, rows, surface, own, others, side, row_stress)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(face_rows_t), intent(in) :: rows
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: own(:) !! pressure of its nodes
-    real(wp), allocatable, intent(in) :: others(:) !! of other interfaces there
+    real(wp), intent(in), contiguous :: own(:) !! contact pressure of its nodes
+    real(wp), allocatable, intent(in) :: others(:) !! contact pressure of other interfaces there
     type(contact_estimate_t), intent(inout) :: side
-    real(wp), allocatable, intent(inout) :: row_stress(:) !! of its nodes
+    real(wp), allocatable, intent(inout) :: row_stress(:) !! element stress at its nodes
     real(wp), dimension(surface%n_node) :: area, moved, pressure
     real(wp) :: places(4, surface%n_node), share(2), stress
     logical :: is_side(surface%n_segment)
@@ -129,7 +128,7 @@ contains
     end do
   end subroutine add_side
 
-  !> Add an instant to what is known of the run.
+  !> Add one instant to the sums of the run.
   pure subroutine add_instant(cycle, dt, side, result, estimate)
     integer, intent(in) :: cycle
     real(wp), intent(in) :: dt
@@ -165,12 +164,12 @@ contains
       estimate%least_margin = min(estimate%least_margin, result%step_limit/dt)
   end subroutine add_instant
 
-  !> Follow all interfaces: the largest energies of their springs and of the bodies on both sides,
-  !> which have none yet at time zero, and the facets of curved surfaces.
+  !> Update the largest energies of the springs and of the bodies on both sides (none at time zero),
+  !> and the facet measures of curved surfaces.
   subroutine update_energy_peaks(model, parts, bodies, state)
     type(model_t), intent(in) :: model
-    type(part_result_t), intent(in) :: parts(:)      !! their internal energies are known
-    integer, allocatable, intent(inout) :: bodies(:) !! (n_part) found in the first call
+    type(part_result_t), intent(in) :: parts(:)      !! with internal energies
+    integer, allocatable, intent(inout) :: bodies(:) !! (n_part) set in the first call
     type(state_t), intent(inout) :: state
     integer :: i
 
@@ -188,11 +187,11 @@ contains
     end do
   end subroutine update_energy_peaks
 
-  !> Bodies: parts that share nodes, or are tied to each other, have one number.
+  !> Number the bodies: parts that share nodes or are tied to each other have one number.
   pure subroutine find_bodies(model, bodies)
     type(model_t), intent(in) :: model
     integer, allocatable, intent(out) :: bodies(:) !! (n_part)
-    integer, allocatable :: first(:) !! (n_node) part that a node was first met in
+    integer, allocatable :: first(:) !! (n_node) first part of each node
     logical :: is_joined(size(model%parts))
     integer :: i, k, slot, part
 
@@ -216,7 +215,7 @@ contains
     end do
   end subroutine find_bodies
 
-  !> Which parts are behind the surfaces of an interface.
+  !> Parts whose elements lie at the surfaces of an interface.
   pure function parts_at_surfaces(model, contact) result(is_behind)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
@@ -231,7 +230,7 @@ contains
     end associate
   end function parts_at_surfaces
 
-  !> Which parts are of the bodies that some of them belong to.
+  !> Parts of all bodies that the given parts belong to.
   pure function of_bodies(bodies, is_some) result(is_of)
     integer, intent(in) :: bodies(:)  !! (n_part)
     logical, intent(in) :: is_some(:) !! (n_part)

@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> The elements behind contact surfaces and those behind them: the stress that a body has at its
-!> face; and faces that several interfaces press on: what the others put there, for the pressure
-!> that stands against that stress is that of all (doc/theory/contact.md, section 8.1).
+!> Stress of the elements at contact surfaces, extrapolated to the segments, and contact pressure of
+!> other interfaces on the same segments: the total pressure balances the stress
+!> (doc/theory/contact.md, section 8.1).
 module face_stress_m
   use element_mass_m, only : element_shares
-  use element_state_m, only : is_gone, stress_of_slot
+  use element_state_m, only : is_eroded, stress_of_slot
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use model_m, only : model_t
@@ -16,36 +16,36 @@ module face_stress_m
   public :: face_rows_t, find_face_rows, face_pressure, face_inertia, elastic_energy, has_stress, &
     position_of, other_pressure_t, find_other_pressures, face_share
 
-  !> Corners, and edges, of an element; a triangle repeats its third node.
+  !> Corners and edges of an element; a triangle repeats its third node.
   integer, parameter :: n_corner = 4
 
-  !> What lies across the edges of the elements behind contact surfaces.
+  !> Elements at contact surfaces and the elements across their edges.
   type :: face_rows_t
     integer, allocatable :: elements(:)  !! (n_row)
-    integer, allocatable :: row_of(:)    !! (n_element) 0: none
-    integer, allocatable :: across(:, :) !! (4, n_row) element across the edge from node k to the
-                                         !! next, 0: none
+    integer, allocatable :: row_of(:)    !! (n_element) row of an element, 0: none
+    integer, allocatable :: across(:, :) !! (4, n_row) element across the edge from node k to node k
+                                         !! + 1, 0: none
     logical :: are_shared = .false.      !! interfaces share nodes
   end type face_rows_t
 
-  !> Pressure of other interfaces on the faces at the nodes of one side of an interface, Pa.
+  !> Contact pressure of other interfaces at the nodes of one side, Pa.
   type :: other_pressure_t
     real(wp), allocatable :: pressure(:)
-    real(wp), allocatable :: area(:) !! of them, half of each face, m or m^2 per radian
+    real(wp), allocatable :: area(:) !! area of each node, half of each segment, m or m^2 per radian
   end type other_pressure_t
 
-  !> A face of a side; sides are the slave and the master of each interface.
+  !> A segment of a side; sides are the slave and the master of each interface.
   type :: face_t
     integer :: side = 0
-    integer :: element = 0             !! behind it
-    integer :: ends(2) = 0             !! local numbers of its nodes in that side
-    integer :: nodes(2) = 0            !! the same in the mesh
+    integer :: element = 0             !! element at the segment
+    integer :: ends(2) = 0             !! local numbers of its nodes in the side
+    integer :: nodes(2) = 0            !! the nodes in the mesh
   end type face_t
 
 contains
 
-  !> Find them, once: of all elements where some may leave the mesh, since others come to its face
-  !> then.
+  !> Find the elements at contact surfaces and their neighbours, once. With erosion all elements,
+  !> since erosion exposes new surfaces.
   subroutine find_face_rows(model, rows)
     type(model_t), intent(in) :: model
     type(face_rows_t), intent(inout) :: rows
@@ -64,7 +64,7 @@ contains
     allocate (rows%row_of(size(is_behind)), source=0)
     rows%row_of(rows%elements) = [(i, i=1, size(rows%elements))]
     call list_opposite_elements(model, rows)
-    ! Where elements may leave the mesh a node may come to be in more than one interface.
+    ! With erosion a node may come into several interfaces.
     if (size(model%contacts) < 2) return
     rows%are_shared = model%erodes
     allocate (user(model%mesh%n_node), source=0)
@@ -77,11 +77,12 @@ contains
     end do
   end subroutine find_face_rows
 
-  !> Neighbours: an edge that one element walks from a to b, the other walks from b to a.
+  !> List the elements across the edges. An edge that one element has from a to b, its neighbour has
+  !> from b to a.
   subroutine list_opposite_elements(model, rows)
     type(model_t), intent(in) :: model
     type(face_rows_t), intent(inout) :: rows
-    integer, allocatable :: first(:), next(:) !! edges of the rows by the node that they start at
+    integer, allocatable :: first(:), next(:) !! edges of the rows by their first node
     integer :: i, k, edge, slot, a
 
     allocate (rows%across(n_corner, size(rows%elements)), first(model%mesh%n_node), &
@@ -113,8 +114,8 @@ contains
     end do
   end subroutine list_opposite_elements
 
-  !> Whether the stress of an element bears what presses on it: not in rigid bodies, where elements
-  !> have left the mesh, nor where all nodes are held or led.
+  !> Whether the stress of an element balances the contact pressure: not in rigid bodies, eroded
+  !> elements, and elements whose nodes are all fixed or prescribed.
   pure function has_stress(model, state, element) result(has)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -123,18 +124,18 @@ contains
 
     associate (slot => model%layout%element_slot(element))
       has = .not. (model%materials(model%parts(slot_part(model%layout, slot))%material)%is_rigid &
-        .or. is_gone(state%elements, slot)) &
+        .or. is_eroded(state%elements, slot)) &
         .and. any(state%inverse_mass(:, model%layout%slot_nodes(:, slot)) > 0.0_wp)
     end associate
   end function has_stress
 
-  !> Pressure -n.s.n of a body at the face from node `a` to node `b`: that of the element behind,
-  !> carried along the normal by the difference to the element behind that, where there is one.
+  !> Pressure -n.s.n of a body at a segment: that of the element, extrapolated along the normal with
+  !> the difference to the next element inside, if there is one.
   function face_pressure(model, state, rows, element, ends) result(pressure)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(face_rows_t), intent(in) :: rows
-    integer, intent(in) :: element, ends(2) !! behind the face; nodes of the face
+    integer, intent(in) :: element, ends(2) !! element at the segment; nodes of the segment
     real(wp) :: pressure
     real(wp) :: ends_at(2, 2), normal(2), depth, beyond_depth
     integer :: beyond
@@ -156,14 +157,14 @@ contains
       *(depth/(beyond_depth - depth))
   end function face_pressure
 
-  !> What moves the mass of an element at the ends of a face, against the normal: the part of the
-  !> pressure that `face_pressure` does not see. That of the row behind, which it carries, is taken
-  !> off.
+  !> Inertia force of an element at the ends of a segment, against the normal: the part of the
+  !> pressure that `face_pressure` does not contain. The acceleration of the next row, which the
+  !> extrapolation contains, is subtracted.
   function face_inertia(model, state, rows, element, ends) result(force)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(face_rows_t), intent(in) :: rows
-    integer, intent(in) :: element, ends(2) !! behind the face; nodes of the face
+    integer, intent(in) :: element, ends(2) !! element at the segment; nodes of the segment
     real(wp) :: force(2)
     real(wp) :: normal(2), shares(4), a(2)
     logical :: is_carried
@@ -191,11 +192,12 @@ contains
         end do
       end associate
     end associate
-    ! The consistent mass of implicit runs hangs half of it on the row behind.
+    ! With the consistent mass of implicit runs half of it acts on the next row.
     if (is_carried .and. allocated(state%acceleration)) force = 0.5_wp*force
   end function face_inertia
 
-  !> Acceleration of a node by elements and contact, m/s^2: body loads and damping act on each row.
+  !> Acceleration of a node by element and contact forces, m/s^2. Body loads and damping act on all
+  !> rows alike and are left out.
   pure function acceleration_of(model, state, node) result(acceleration)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -211,7 +213,7 @@ contains
     end if
   end function acceleration_of
 
-  !> -n.s.n of an element.
+  !> Pressure -n.s.n of an element.
   pure function normal_pressure(model, state, element, n) result(pressure)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -224,7 +226,7 @@ contains
     pressure = -(s(1)*n(1)**2 + s(2)*n(2)**2 + 2.0_wp*s(4)*n(1)*n(2))
   end function normal_pressure
 
-  !> The element across the edge opposite of a face, 0: none, or a triangle.
+  !> Element across the edge opposite of a segment, 0: none, or the element is a triangle.
   pure function opposite_element(model, rows, element, ends) result(beyond)
     type(model_t), intent(in) :: model
     type(face_rows_t), intent(in) :: rows
@@ -244,8 +246,8 @@ contains
     end associate
   end function opposite_element
 
-  !> Elastic energy of an element by its stress and the moduli of its material, J per metre or per
-  !> radian: of laws with others it is a measure.
+  !> Elastic energy of an element from its stress and the moduli K and G of its material, J per
+  !> metre or per radian; an estimate for nonlinear laws.
   function elastic_energy(model, state, element) result(energy)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -272,7 +274,7 @@ contains
     energy = volume*energy
   end function elastic_energy
 
-  !> Centre of the corners of an element, m.
+  !> Mean of the corners of an element, m.
   pure function centre_of(model, state, element) result(centre)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -289,7 +291,7 @@ contains
     end associate
   end function centre_of
 
-  !> Where a node is, m.
+  !> Current position of a node, m.
   pure function position_of(model, state, node) result(place)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -299,24 +301,23 @@ contains
     place = model%mesh%coordinates(:, node) + state%motion(1:2, node)
   end function position_of
 
-  !> What other interfaces put on the faces of each side. The pressure of a node acts on all of its
-  !> faces in an interface alike.
+  !> Contact pressure of other interfaces on the segments of each side. The pressure of a node acts
+  !> on all its segments of an interface.
   subroutine find_other_pressures(model, state, slaves, others)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(slave_result_t), intent(in) :: slaves(:) !! (n_interface)
-    type(other_pressure_t), intent(inout) :: others(:) !! (2, interfaces that are told), empty
-                                                       !! before
+    type(other_pressure_t), intent(inout) :: others(:) !! (2, interfaces); empty before
     type(surface_t) :: surfaces(size(others))
     type(face_t), allocatable :: faces(:)
-    integer, allocatable :: first(:), next(:) !! faces by the node that they start at
+    integer, allocatable :: first(:), next(:) !! segments by their first node
     real(wp) :: pressure(2)
     integer :: i, k, m, s
 
     do i = 1, size(others)/2
       surfaces(2*i - 1) = state%outlines(i)%slave
       surfaces(2*i) = state%outlines(i)%master
-      ! Of a surface with itself all is on the slave.
+      ! Self contact has slave nodes only.
       if (state%outlines(i)%is_self) surfaces(2*i)%n_segment = 0
     end do
     allocate (faces(sum(surfaces%n_segment)), next(sum(surfaces%n_segment)))
@@ -356,7 +357,7 @@ contains
     end do
   end subroutine find_other_pressures
 
-  !> The area of a face that each of its ends has, m or m^2 per radian.
+  !> Area of a segment that belongs to each of its ends, m or m^2 per radian.
   pure function face_share(model, state, nodes) result(share)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

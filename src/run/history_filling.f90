@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> What histories tell beside sums and fields: supports (spcforc), elements (elout), boundaries and
-!> groups of nodes (bndout, nodfor) and cross sections (secforc). Both drivers fill them into the
+!> Rows of histories other than sums and fields: supports (spcforc), elements (elout), boundaries
+!> and groups of nodes (bndout, nodfor), cross sections (secforc). Both drivers fill them into the
 !> snapshot where they are due.
 module history_filling_m
   use controls_m, only : cross_section_t, boundary_load, boundary_pressure
-  use element_state_m, only : stress_of_slot, plastic_strain_of_slot, is_gone
+  use element_state_m, only : stress_of_slot, plastic_strain_of_slot, is_eroded
   use loads_m, only : add_nodal_loads, add_pressures
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -18,13 +18,12 @@ module history_filling_m
 
 contains
 
-  ! ---- forces of supports: where a degree of freedom is fixed, R = m a + f with a = 0 and f the
-  ! internal less all other forces
+  ! ---- support forces: R = f_int - f_ext - f_contact at a fixed degree of freedom
 
-  !> Reactions from R of all degrees of freedom; 0 in directions that are free.
+  !> Fill the reactions of supports; 0 in free directions.
   pure subroutine fill_reactions(model, reaction, snapshot)
     type(model_t), intent(in) :: model
-    real(wp), intent(in) :: reaction(:, :)   !! (2, n_node)
+    real(wp), intent(in) :: reaction(:, :)   !! (2, n_node) R of all degrees of freedom
     type(snapshot_t), intent(inout) :: snapshot
     logical :: is_fixed(2, model%mesh%n_node)
     integer :: i
@@ -38,7 +37,7 @@ contains
       is_fixed(:, snapshot%supports))
   end subroutine fill_reactions
 
-  !> Reactions of the explicit method; a body load pulls at the mass of fixed nodes too.
+  !> Fill the reactions of the explicit driver. A body load acts on the mass of fixed nodes too.
   pure subroutine fill_explicit_reactions(model, state, snapshot, held)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -66,7 +65,7 @@ contains
 
   ! ---- elements
 
-  !> Stresses and plastic strains of the elements of *DATABASE_HISTORY_SHELL.
+  !> Fill stresses and plastic strains of the elements of *DATABASE_HISTORY_SHELL.
   subroutine fill_history_elements(model, state, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -77,9 +76,9 @@ contains
     do i = 1, size(snapshot%history_elements)
       associate (slot => model%layout%element_slot(model%controls%output%history_elements(i)), &
         element => snapshot%history_elements(i))
-        element%is_gone = is_gone(state%elements, slot)
+        element%is_eroded = is_eroded(state%elements, slot)
         element%stress = 0.0_wp
-        if (.not. element%is_gone) element%stress = stress_of_slot(model, state%motion, &
+        if (.not. element%is_eroded) element%stress = stress_of_slot(model, state%motion, &
           state%elements, slot)
         element%plastic_strain = plastic_strain_of_slot(model, state%elements, slot)
       end associate
@@ -88,7 +87,7 @@ contains
 
   ! ---- boundaries and groups of nodes
 
-  !> Forces of nodal loads and pressures at `time`, into their rows.
+  !> Forces of nodal loads and pressures at `time`, by row of bndout.
   subroutine form_loads(model, motion, time, force)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)    !! (4, n_node)
@@ -108,7 +107,7 @@ contains
     end associate
   end subroutine form_loads
 
-  !> What the state keeps of them, for the files.
+  !> Copy forces and works of boundaries and node groups into the snapshot.
   subroutine fill_boundaries(state, snapshot)
     type(state_t), intent(in) :: state
     type(snapshot_t), intent(inout) :: snapshot
@@ -123,9 +122,9 @@ contains
     end if
   end subroutine fill_boundaries
 
-  ! ---- cross sections: resultants of what their elements put on their nodes
+  ! ---- cross sections: resultants of the element forces on the nodes of the section
 
-  !> All of them, from the forces that the state keeps.
+  !> Fill all cross sections from the stored element forces.
   subroutine fill_sections(model, state, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -144,8 +143,8 @@ contains
     end associate
   end subroutine fill_sections
 
-  !> Area and its centroid, now: of the edges that lie in the section; of nodes without edges their
-  !> mean place, without area.
+  !> Current area and centroid of the edges in the section; without edges the mean position of its
+  !> nodes and no area.
   pure subroutine find_centroid(model, section, state, result)
     type(model_t), intent(in) :: model
     type(cross_section_t), intent(in) :: section
@@ -177,12 +176,12 @@ contains
     end do
   end subroutine find_centroid
 
-  !> Sum of the forces on the nodes of the section, and their moment about its centroid.
+  !> Sum of the forces on the nodes of the section and their moment about its centroid.
   pure subroutine add_forces(model, section, state, first, result)
     type(model_t), intent(in) :: model
     type(cross_section_t), intent(in) :: section
     type(state_t), intent(in) :: state
-    integer, intent(in) :: first              !! of its elements among those that are cut
+    integer, intent(in) :: first              !! of its elements among those of all sections
     type(section_result_t), intent(inout) :: result
     real(wp) :: arm(2), f(2)
     integer :: i, k

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Watches a run for the files: what is due, and writing it: the part of that which both drivers do.
+!> Output of a run, shared by both drivers: schedules of the files, what is due, and writing it.
 module monitor_m
   use clock_m, only : clock_t
   use error_indicator_m, only : evaluate_indicators, update_energy_peaks
@@ -28,56 +28,58 @@ module monitor_m
   implicit none
   private
   public :: monitor_t, open_files, start_monitor, start_schedules, find_due, write_due, &
-    note_energies, write_instant, finish_monitor, due_t, schedule_t, start_schedule, is_due, &
+    record_energies, write_instant, finish_monitor, due_t, schedule_t, start_schedule, is_due, &
     mark_written, output_reach, resume_schedule
 
-  !> A tie of two cycles round an output time goes to the first, although sums of steps carry
-  !> rounding: this fraction of a step is forgiven.
+  !> Round-off of an output time as a share of a step: of two cycles at equal distance the first is
+  !> due, although sums of steps carry rounding.
   real(wp), parameter :: forgiven = 1.0e-6_wp
-  !> Part of a step that a state may be early for an output time where steps can be cut.
+  !> Share of a step by which a state may precede an output time where steps can be cut.
   real(wp), parameter :: soon = 1.0e-6_wp
-  !> Shortest interval as a fraction of the run, so that every count stays finite; a bound of these.
+  !> Shortest interval as a share of the run, so that counts stay finite, and the bound of these
+  !> counts.
   real(wp), parameter :: shortest = 1.0e-9_wp
   integer(long), parameter :: most_outputs = 2_long**53
 
-  !> The plan of one output.
+  !> Schedule of one output.
   type, extends(visited_t) :: schedule_t
     logical :: active = .false.         !! false: never due
     real(wp) :: interval = 0.0_wp       !! constant interval, s; unused with a curve
     logical :: varies = .false.         !! the interval comes from the curve
     type(curve_t) :: curve              !! interval against time, s
-    integer(long) :: count = 0          !! multiples that are done
+    integer(long) :: count = 0          !! multiples that are written
     real(wp) :: next = 0.0_wp           !! next output time, s
-    real(wp) :: end_time = 0.0_wp       !! no output time lies after it
+    real(wp) :: end_time = 0.0_wp       !! last possible output time, s
   contains
     procedure :: visit => visit_schedule
   end type schedule_t
 
-  !> What is due in one cycle.
+  !> Outputs that are due in a cycle.
   type :: due_t
     logical :: plot = .false.
     logical :: tables(n_table) = .false. !! by the `table_` constants
   end type due_t
 
-  !> Files, their schedules, the log, the clock and the progress lines of a run.
+  !> Files, schedules, log, clock and progress lines of a run.
   type :: monitor_t
     type(schedule_t) :: plot
-    type(schedule_t) :: tables(n_table) !! by the `table_` constants; never due: what goes with plot
-    integer, allocatable :: scheduled(:) !! those that may be due
+    type(schedule_t) :: tables(n_table) !! by the `table_` constants; inactive for tables written
+                                        !! with plot states
+    integer, allocatable :: scheduled(:) !! active tables
     type(results_file_t) :: results
     type(histories_t) :: histories
     type(snapshot_t) :: snapshot
-    type(face_rows_t) :: rows          !! elements behind contact surfaces
-    integer, allocatable :: bodies(:)  !! (n_part) parts that hang together have one number
+    type(face_rows_t) :: rows          !! elements at contact surfaces
+    integer, allocatable :: bodies(:)  !! (n_part) number of the body of each part
     type(log_t) :: log
     type(clock_t) :: clock
     type(progress_t) :: progress
     type(restarts_t) :: restarts
     type(ranks_t) :: ranks        !! the first process alone has files
     logical :: has_plot = .false. !! the deck asks for plot states
-    logical :: warned_radii = .false. !! the log tells of nodes beyond the axis
-    logical :: warned_ratio = .false. !! and of energies that do not add up
-    logical :: only_checks = .false. !! the state at time zero is made, and at most its file
+    logical :: warned_radii = .false. !! nodes across the axis have been reported
+    logical :: warned_ratio = .false. !! a violated energy balance has been reported
+    logical :: only_checks = .false. !! write the state at time zero only
   end type monitor_t
 
 contains
@@ -104,17 +106,17 @@ contains
       if (is_asked(model%controls%output%histories(k)) .and. n_each(model, k) <= 0) &
         names = names//', '//trim(history_tables(k)%name)
     end do
-    if (len(names) > 0) call write_log(monitor%log, 'no file, since the model has nothing for ' &
-      //'it: '//names(3:))
+    if (len(names) > 0) call write_log(monitor%log, 'requested without content in the ' &
+      //'model, not written: '//names(3:))
     if (monitor%has_plot) &
       call open_results(monitor%results, prefix//'.vtkhdf', model, run_info, &
         monitor%restarts%is_restart, error)
   end subroutine open_files
 
-  !> Schedules, progress lines and the snapshot.
+  !> Set up schedules, progress lines and the snapshot.
   subroutine start_monitor(model, has_history, monitor)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: has_history !! some part keeps a plastic strain
+    logical, intent(in) :: has_history !! some part has a plastic strain
     type(monitor_t), intent(inout) :: monitor
 
     call start_schedules(model, monitor)
@@ -126,8 +128,8 @@ contains
     if (monitor%ranks%mine == 0) call start_snapshot(model, has_history, monitor%snapshot)
   end subroutine start_monitor
 
-  !> Energies go with the plot states where the deck gives them no interval of their own, since
-  !> every run has an energy history.
+  !> Set up the schedules. Energies go with plot states where the deck gives them no interval, so
+  !> that every run has an energy history.
   subroutine start_schedules(model, monitor)
     type(model_t), intent(in) :: model
     type(monitor_t), intent(inout) :: monitor
@@ -137,7 +139,7 @@ contains
     associate (plan => model%controls%output, end_time => model%controls%end_time)
       call start_schedule(monitor%plot, plan%plot, model%curves, end_time)
       do k = 1, n_table
-        ! Rows that no file receives must not make a cycle write.
+        ! A table without rows makes no cycle due.
         if (n_each(model, k) <= 0) cycle
         interval = plan%histories(k)
         if (history_tables(k)%asked == asked_or_states .and. .not. is_asked(interval)) &
@@ -148,7 +150,7 @@ contains
     end associate
   end subroutine start_schedules
 
-  !> What is due at `time`; `everything` for the first and the last state.
+  !> Outputs due at `time`; `everything` for the first and the last state.
   pure function find_due(monitor, time, dt, everything) result(due)
     type(monitor_t), intent(in) :: monitor
     real(wp), intent(in) :: time, dt
@@ -168,7 +170,7 @@ contains
       due%tables = due%plot
   end function find_due
 
-  !> Write what is due from the snapshot.
+  !> Write the due outputs from the snapshot.
   subroutine write_due(model, due, dt, monitor, error)
     type(model_t), intent(in) :: model
     type(due_t), intent(in) :: due
@@ -197,11 +199,10 @@ contains
     end associate
   end subroutine write_due
 
-  !> Energies of the snapshot are known: those at time zero are the initial ones; contact springs
-  !> beside the bodies.
-  subroutine note_energies(model, knows_parts, state, monitor)
+  !> Record the initial energy at time zero and the largest energies of springs and bodies.
+  subroutine record_energies(model, knows_parts, state, monitor)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: knows_parts !! internal energies of parts too
+    logical, intent(in) :: knows_parts !! internal energies of parts are in the snapshot
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
 
@@ -210,15 +211,14 @@ contains
       monitor%snapshot%energies%initial = state%initial_energy
     end if
     if (knows_parts) call update_energy_peaks(model, monitor%snapshot%parts, monitor%bodies, state)
-  end subroutine note_energies
+  end subroutine record_energies
 
-  !> Fill the rest of a snapshot, of which the driver has filled what it has its own way with, and
-  !> write what is due of it.
+  !> Complete the snapshot, of which the driver has filled its own part, and write the due outputs.
   subroutine write_instant(model, due, dt, ratio, state, monitor, error)
     type(model_t), intent(in) :: model
     type(due_t), intent(in) :: due
-    real(wp), intent(in) :: dt    !! reach of the outputs, s
-    real(wp), intent(in) :: ratio !! last energy ratio known
+    real(wp), intent(in) :: dt    !! tolerance of output times (`output_reach`), s
+    real(wp), intent(in) :: ratio !! last known energy ratio
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(inout) :: error
@@ -252,7 +252,7 @@ contains
   ! interval. Multiples are formed as k times the interval, never by adding, so that nothing drifts.
   ! An interval that varies (a curve of time) leads from each output time to the next.
 
-  !> Plan the outputs of `interval` from time zero to `end_time`.
+  !> Set up the schedule of an interval from time zero to `end_time`.
   pure subroutine start_schedule(schedule, interval, curves, end_time)
     type(schedule_t), intent(out) :: schedule
     type(interval_t), intent(in) :: interval
@@ -266,19 +266,19 @@ contains
     schedule%interval = max(interval%dt, shortest*end_time)
   end subroutine start_schedule
 
-  !> The step by which the state nearest to an output time is found. A planned implicit step may be
-  !> cut: then the state at or after an output time counts, not the nearest.
+  !> Step by which the state nearest to an output time is found. An automatic implicit step may be
+  !> cut, so the state at or after an output time counts there.
   pure function output_reach(controls, dt) result(reach)
     type(controls_t), intent(in) :: controls
-    real(wp), intent(in) :: dt     !! step that leads away from the state, s
+    real(wp), intent(in) :: dt     !! step from the state to the next, s
     real(wp) :: reach
 
     reach = dt
     if (controls%implicit%is_on .and. controls%implicit%is_automatic) reach = soon*dt
   end function output_reach
 
-  !> Whether the state at `time` is the nearest to an output time that has not been written;
-  !> `dt` is the step between states.
+  !> Whether the state at `time` is the nearest to the next output time; `dt` is the step between
+  !> states.
   pure function is_due(schedule, time, dt) result(due)
     type(schedule_t), intent(in) :: schedule
     real(wp), intent(in) :: time, dt   !! s
@@ -291,13 +291,13 @@ contains
       schedule%next <= time + (0.5_wp + forgiven)*step
   end function is_due
 
-  !> Move on to the first output time that a later state is nearest to. Several intervals that fell
-  !> into one step are done together.
+  !> Advance to the first output time that a later state is nearest to. Several intervals within one
+  !> step are written once.
   pure subroutine mark_written(schedule, time, dt)
     type(schedule_t), intent(inout) :: schedule
     real(wp), intent(in) :: time, dt   !! s, as given to `is_due`
 
-    ! A first state may lie far beyond the end.
+    ! The first state may lie far beyond the end time.
     if (.not. schedule%varies .and. schedule%active) schedule%count = max(schedule%count, &
       int((min(time, schedule%end_time) + (0.5_wp + forgiven)*min(dt, schedule%end_time)) &
       /schedule%interval, long) - 1)
@@ -306,7 +306,7 @@ contains
     end do
   end subroutine mark_written
 
-  !> The output time after the present one. A curve that falls to zero ends the output.
+  !> Advance to the next output time. A curve that falls to zero ends the output.
   pure subroutine advance(schedule)
     type(schedule_t), intent(inout) :: schedule
     real(wp) :: interval
@@ -321,11 +321,11 @@ contains
     if (interval <= 0.0_wp) schedule%active = .false.
   end subroutine advance
 
-  !> Take up how far an output is. Where the run goes on with another interval, the first output
-  !> comes at the next multiple of the new one. That of a curve may have come to its end.
+  !> Take over the schedule of the run before a restart. With another interval the first output
+  !> comes at the next multiple of the new one.
   pure subroutine resume_schedule(kept, time, dt, schedule)
     type(schedule_t), intent(in) :: kept            !! of the run before
-    real(wp), intent(in) :: time, dt      !! of the state before, as given to `is_due` then
+    real(wp), intent(in) :: time, dt      !! of the state before, as given to `is_due`
     type(schedule_t), intent(inout) :: schedule     !! planned from the deck
     logical :: same, follows
 
@@ -348,7 +348,7 @@ contains
     end if
   end subroutine resume_schedule
 
-  !> Its components; the deck, which may change it, has the end.
+  !> Visit the components; the end time comes from the deck, which may change it.
   subroutine visit_schedule(self, visitor)
     class(schedule_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

@@ -1,8 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What a person or a script sees while the run goes on: one updating line on a terminal, plain
-!> lines in the DYNA manner in a pipe, the file status.out, and the summary at the end. A screen
-!> that takes no more (a closed window, a full disk behind `>`) does not end a run: the log has the
-!> same lines. Nor does a status.out that can not be written; it is replaced as a whole.
+!> Progress of a run: one updating line on a terminal, DYNA-like lines in a pipe, the file
+!> status.out, and the summary at the end. Failures to write to the screen or to status.out do not
+!> end a run; the log has the same lines.
 module progress_m
   use clock_m, only : clock_t, read_clock, elapsed_seconds, total_seconds, phase_seconds, &
     lap_seconds, phase_names, n_phase, n_contact_phase, phase_contact_search, phase_input, &
@@ -16,41 +15,42 @@ module progress_m
   use text_files_m, only : write_whole
   implicit none
   private
-  public :: progress_t, start_progress, follow_progress, show_progress, show_note, show_end, &
+  public :: progress_t, start_progress, update_progress, show_progress, show_note, show_end, &
     write_status, timing_text
 
-  !> Cycles between two looks at a clock that takes no laps.
+  !> Cycles between two readings of a clock that takes no laps.
   integer, parameter :: clock_cycles = 64
   !> Seconds between two refreshes on a terminal, and between two lines in a pipe.
   real(wp), parameter :: terminal_interval = 0.25_wp, pipe_interval = 10.0_wp
-  !> Lines in a pipe before the end of a run, at most: thousands of runs write into one file.
+  !> Largest number of lines in a pipe before the end of a run: thousands of runs may write into one
+  !> file.
   integer, parameter :: most_lines = 20
   character(1), parameter :: n = new_line('a')
 
-  !> Seconds between two status files at least.
+  !> Least seconds between two status files.
   real(wp), parameter :: file_interval = 1.0_wp
 
-  !> What the lines and the file status.out need to know.
+  !> Data of the lines and of the file status.out.
   type :: progress_t
     logical :: terminal = .false.
-    logical :: is_quiet = .false.   !! nothing but how the run has ended
-    logical :: line_open = .false.  !! an updating line waits for its end
+    logical :: is_quiet = .false.   !! print the end of the run only
+    logical :: line_open = .false.  !! an updating line is not finished
     integer :: n_line = 0           !! lines written into a pipe
     integer :: status_interval = 0  !! cycles between lines, 0 = by time only
     integer(long) :: next_tick = 0  !! clock tick of the next line
     integer(long) :: wait = 0       !! ticks between lines
     character(:), allocatable :: path !! of status.out; not allocated: no file
     character(:), allocatable :: job
-    integer(long) :: next_file = 0  !! clock tick of the next one
+    integer(long) :: next_file = 0  !! clock tick of the next status file
     integer :: cycle = 0
-    integer :: start_cycle = 0      !! where this run began: not 0 after a restart
+    integer :: start_cycle = 0      !! cycle at the start: not 0 after a restart
     integer :: end_cycle = 0        !! ENDCYC, 0 = none
     real(wp) :: time = 0.0_wp
     real(wp) :: dt = 0.0_wp
-    real(wp) :: ratio = 1.0_wp      !! last energy ratio known
+    real(wp) :: ratio = 1.0_wp      !! last known energy ratio
     real(wp) :: start_time = 0.0_wp
     real(wp) :: end_time = 0.0_wp
-    real(wp) :: start_seconds = 0.0_wp !! clock time when its cycles began
+    real(wp) :: start_seconds = 0.0_wp !! clock time at the start of its cycles
   end type progress_t
 
 contains
@@ -71,9 +71,9 @@ contains
     progress%next_tick = now + progress%wait
   end subroutine start_progress
 
-  !> A line or the status file where one is due though no result was written. Asked in every cycle:
-  !> that the clock is read for it is rare where steps are short.
-  subroutine follow_progress(progress, clock, cycle, steps_are_long, time, dt, ratio)
+  !> Print a line or write the status file if one is due by time or cycle. Called in every cycle;
+  !> the clock is read rarely where steps are short.
+  subroutine update_progress(progress, clock, cycle, steps_are_long, time, dt, ratio)
     type(progress_t), intent(inout) :: progress
     type(clock_t), intent(inout) :: clock
     integer, intent(in) :: cycle
@@ -90,17 +90,16 @@ contains
     else if (clock%last >= progress%next_file) then
       call store_progress(progress, clock, cycle, time, dt, ratio)
     end if
-  end subroutine follow_progress
+  end subroutine update_progress
 
-  !> One line. `event` says what was written, blank for none; `ratio` is
-  !> the last energy ratio known. A pipe gets a line where the next share of the run is done, or
-  !> where one was asked for (`is_asked`).
+  !> Print one line. A pipe gets a line when the next share of the run is done, or on request
+  !> (`is_asked`).
   subroutine show_progress(progress, clock, cycle, time, dt, ratio, event, is_asked)
     type(progress_t), intent(inout) :: progress
     type(clock_t), intent(in) :: clock
     integer, intent(in) :: cycle
-    real(wp), intent(in) :: time, dt, ratio
-    character(*), intent(in) :: event
+    real(wp), intent(in) :: time, dt, ratio !! last known energy ratio
+    character(*), intent(in) :: event !! what was written, blank for none
     logical, intent(in), optional :: is_asked
     real(wp) :: share, to_go
     integer(long) :: now
@@ -130,7 +129,7 @@ contains
     end if
   end subroutine show_progress
 
-  !> A line of its own to the screen and to the log: a restart, a restart file.
+  !> Print a line of its own on the screen and in the log: a restart, a restart file.
   subroutine show_note(progress, log, text)
     type(progress_t), intent(inout) :: progress
     type(log_t), intent(inout) :: log
@@ -144,13 +143,13 @@ contains
     call print_line(text)
   end subroutine show_note
 
-  !> The end of the run: how it ended, problem time, cycles, cost and the timing table.
+  !> Print the end of a run: reason, problem time, cycles, cost and the timing table.
   subroutine show_end(progress, clock, log, normal, reason, cycle, time, n_element)
     type(progress_t), intent(inout) :: progress
     type(clock_t), intent(in) :: clock
     type(log_t), intent(inout) :: log
     logical, intent(in) :: normal
-    character(*), intent(in) :: reason !! what ended the run
+    character(*), intent(in) :: reason !! reason of the end
     integer, intent(in) :: cycle
     real(wp), intent(in) :: time
     integer, intent(in) :: n_element
@@ -177,10 +176,10 @@ contains
       //' Problem cycle       = '//to_text(cycle)//n &
       //' Elapsed time        = '//fixed(elapsed, 3)//' seconds'//n &
       //' Time per zone cycle = '//fixed(cost, 2)//' nanoseconds (output and input ' &
-      //trim(merge('apart   ', 'included', clock%is_on))//')'//n &
+      //trim(merge('excluded', 'included', clock%is_on))//')'//n &
       //' Warnings            = '//to_text(log%n_warning)//n
     if (clock%is_on) call add_timing(lines, clock, seconds)
-    ! In one piece: beside a small run each line of its own would be felt.
+    ! One write: separate lines would cost time in small runs.
     lines = lines(:len(lines) - 1)
     if (progress%is_quiet) then
       call print_line(ending)
@@ -190,7 +189,7 @@ contains
     call write_log(log, lines)
   end subroutine show_end
 
-  !> The timing table, and what the timing itself took.
+  !> Add the timing table and the cost of the timing itself.
   subroutine add_timing(lines, clock, seconds)
     character(:), allocatable, intent(inout) :: lines
     type(clock_t), intent(in) :: clock
@@ -213,7 +212,7 @@ contains
       //fixed(100.0_wp*each*sum(clock%calls)/total, 2)//' % of the time'//n
   end subroutine add_timing
 
-  !> A number of 0 or more with `digits` behind the point and at least one before it.
+  !> A non-negative number with `digits` decimals and at least one digit before the point.
   pure function fixed(number, digits) result(text)
     real(wp), intent(in) :: number
     integer, intent(in) :: digits
@@ -227,7 +226,7 @@ contains
     if (text(1:1) == '.') text = '0'//text
   end function fixed
 
-  !> Take new numbers, and write them when the last file is old enough.
+  !> Store new values, and write the status file when the last one is old enough.
   subroutine store_progress(progress, clock, cycle, time, dt, ratio)
     type(progress_t), intent(inout) :: progress
     type(clock_t), intent(in) :: clock
@@ -243,11 +242,11 @@ contains
     if (now >= progress%next_file) call write_status(progress, clock, 'running')
   end subroutine store_progress
 
-  !> Write the file status.out: how far a run is and how long it may take.
+  !> Write the file status.out: progress of the run and estimated time.
   subroutine write_status(progress, clock, state)
     type(progress_t), intent(inout) :: progress
     type(clock_t), intent(in) :: clock
-    character(*), intent(in) :: state !! running, or how the run has ended
+    character(*), intent(in) :: state !! running, or how the run ended
     type(error_t), allocatable :: error
     integer(long) :: now, rate
 
@@ -287,7 +286,7 @@ contains
     text = text//' written                          '//time_stamp()//n
   end function status_text
 
-  !> Share of the run that has been done, by time or by cycles.
+  !> Share of the run that is done, by time or by cycles.
   pure function done_share(progress) result(share)
     type(progress_t), intent(in) :: progress
     real(wp) :: share
@@ -299,7 +298,7 @@ contains
       real(progress%cycle - progress%start_cycle, wp)/(progress%end_cycle - progress%start_cycle))
   end function done_share
 
-  !> Seconds until the end at the pace since this run began; -1 where nothing has been done yet.
+  !> Estimated seconds to the end; -1 where nothing has been done yet.
   pure function seconds_to_go(progress, elapsed) result(seconds)
     type(progress_t), intent(in) :: progress
     real(wp), intent(in) :: elapsed
@@ -336,11 +335,10 @@ contains
       //hour(5:6)
   end function time_stamp
 
-  !> The timing file as text, wall clock of the run by phase: `phase,seconds,calls,share`, one row
-  !> per phase and the row `total`, which is the time from the start to the last lap. Where
-  !> interfaces are timed, rows such as `contact_force.2` follow their phase and add up to it. Where
-  !> no laps are taken there is the total alone. Seconds are whole nanoseconds with nine decimals,
-  !> so that the phases add up to the total to the last digit.
+  !> The timing file: wall clock by phase as `phase,seconds,calls,share`, one row per phase and the
+  !> row `total` from the start to the last lap. With timed interfaces rows such as
+  !> `contact_force.2` follow their phase and add up to it. Without laps there is the total alone.
+  !> Seconds are whole nanoseconds with nine decimals, so that phases add up to the total exactly.
   function timing_text(clock, interfaces) result(text)
     type(clock_t), intent(in) :: clock
     integer, intent(in) :: interfaces(:) !! their ids

@@ -1,8 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What ends a run before its end time, or interrupts it: a condition of the deck
-!> (*TERMINATION_NODE, _BODY, _CONTACT), or someone outside, who asks by a word in d3kil or by a
-!> signal. What needs no more than the files (a line of status, histories brought up to date) is
-!> done here; the driver does the rest.
+!> End conditions of the deck (*TERMINATION_NODE, _BODY, _CONTACT) and requests of the user during a
+!> run, by a word in the file d3kil or by a signal. Status lines and flushed histories are handled
+!> here, all else by the driver.
 module requests_m
   use controls_m, only : end_condition_t, end_node_coordinate, end_node_contact, &
     end_body_displacement, end_body_distance, end_contact
@@ -23,92 +22,93 @@ module requests_m
   public :: requests_t, read_requests, recent_requests_t, get_signals, drop_repeated, read_switch, &
     find_early_end
 
-  !> Longest line that is read, whatever the environment says (GFORTRAN_DEFAULT_RECL).
+  !> Longest line that is read, whatever the environment sets (GFORTRAN_DEFAULT_RECL).
   integer, parameter :: line_length = 100000
 
-  !> What is asked for.
+  !> Requests of the user.
   type :: requests_t
     logical :: dump = .false.      !! a numbered restart file (sw1, sw3, SIGUSR1)
     logical :: plot = .false.      !! a plot state (sw4, SIGUSR2)
     logical :: stop = .false.      !! an end before its time (sw1, stop, SIGTERM, SIGINT, SIGHUP)
-    logical :: signalled = .false. !! a signal asks for that end
+    logical :: signalled = .false. !! a signal requests the stop
   end type requests_t
 
-  !> A launcher hands SIGUSR1 and SIGUSR2 to every process of a run, and these hear them in
-  !> different cycles: what comes within a second of what was done is not asked again.
+  !> Recently served requests. A launcher sends SIGUSR1 and SIGUSR2 to every process, and these
+  !> receive them in different cycles: a request within a second of the same one is ignored.
   type :: recent_requests_t
-    integer(long) :: done(2) = -huge(1_long) !! tick after the last restart file, plot state
+    integer(long) :: done(2) = -huge(1_long) !! clock tick of the last restart file and of the last
+                                             !! plot state
   end type recent_requests_t
 
 contains
 
-  !> What is asked of a process that has no files: signals alone.
-  subroutine get_signals(asked)
-    type(requests_t), intent(out) :: asked
+  !> Requests by signal, of a process without files.
+  subroutine get_signals(requests)
+    type(requests_t), intent(out) :: requests
 
-    asked%dump = is_requested(request_dump)
-    asked%plot = is_requested(request_plot)
-    asked%signalled = stop_requested()
-    asked%stop = asked%signalled
+    requests%dump = is_requested(request_dump)
+    requests%plot = is_requested(request_plot)
+    requests%signalled = stop_requested()
+    requests%stop = requests%signalled
   end subroutine get_signals
 
-  !> Leave out what has just been done.
-  subroutine drop_repeated(before, echoes, asked)
-    type(requests_t), intent(in) :: before    !! done since the last call
-    type(recent_requests_t), intent(inout) :: echoes
-    type(requests_t), intent(inout) :: asked
+  !> Drop requests that repeat one served within the last second.
+  subroutine drop_repeated(served, recent, requests)
+    type(requests_t), intent(in) :: served    !! requests served since the last call
+    type(recent_requests_t), intent(inout) :: recent
+    type(requests_t), intent(inout) :: requests
     integer(long) :: now, rate
 
-    if (.not. any([before%dump, before%plot, asked%dump, asked%plot])) return
+    if (.not. any([served%dump, served%plot, requests%dump, requests%plot])) return
     call system_clock(now, rate)
-    where ([before%dump, before%plot]) echoes%done = now
-    asked%dump = asked%dump .and. now - rate > echoes%done(1)
-    asked%plot = asked%plot .and. now - rate > echoes%done(2)
+    where ([served%dump, served%plot]) recent%done = now
+    requests%dump = requests%dump .and. now - rate > recent%done(1)
+    requests%plot = requests%plot .and. now - rate > recent%done(2)
   end subroutine drop_repeated
 
-  !> Look whether anything is asked for: for signals always, for d3kil twice a second, or
-  !> always where steps are long.
-  subroutine read_requests(state, ratio, steps_are_long, monitor, asked, error)
+  !> Read the requests: signals in each call; d3kil twice a second, or in each call where steps are
+  !> long.
+  subroutine read_requests(state, ratio, steps_are_long, monitor, requests, error)
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: ratio          !! last energy ratio known
     logical, intent(in) :: steps_are_long
     type(monitor_t), intent(inout) :: monitor
-    type(requests_t), intent(out) :: asked
+    type(requests_t), intent(out) :: requests
     type(error_t), allocatable, intent(inout) :: error
-    logical :: looks
+    logical :: is_due
     character(:), allocatable :: switch
 
     switch = ''
-    looks = steps_are_long
-    if (.not. looks) call is_poll_due(monitor%restarts, monitor%clock%is_on, monitor%clock%last, &
-      state%cycle, looks)
-    if (looks) call read_switch(monitor%restarts%directory, switch)
-    call get_signals(asked)
+    is_due = steps_are_long
+    if (.not. is_due) call is_poll_due(monitor%restarts, monitor%clock%is_on, monitor%clock%last, &
+      state%cycle, is_due)
+    if (is_due) call read_switch(monitor%restarts%directory, switch)
+    call get_signals(requests)
     select case (switch)
     case ('')
       continue
     case ('SW1')
-      asked%dump = .true.
-      asked%stop = .true.
+      requests%dump = .true.
+      requests%stop = .true.
     case ('SW2')
       call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, &
         ratio, 'status (sw2)', .true.)
     case ('SW3')
-      asked%dump = .true.
+      requests%dump = .true.
     case ('SW4')
-      asked%plot = .true.
+      requests%plot = .true.
     case ('STOP')
-      asked%stop = .true.
+      requests%stop = .true.
     case ('SWA')
       if (.not. allocated(error)) call flush_histories(monitor%histories, .true., error)
     case default
-      call warn(monitor%log, 'd3kil holds none of sw1, sw2, sw3, sw4, swa, stop')
+      call warn(monitor%log, 'd3kil holds an unknown word; known: sw1, sw2, sw3, sw4, swa, stop')
     end select
   end subroutine read_requests
 
-  !> The word in the file d3kil of this folder, in capital letters and without the point of `SWA.`,
-  !> as old manuals write it; the file is removed. One without a word is left: it may be about to be
-  !> written.
+  !> Read the word in the file d3kil of a folder and remove the file. The word is returned in
+  !> capitals, without the point of `SWA.` of old manuals. An empty file stays: it may be in the
+  !> course of being written.
   subroutine read_switch(directory, switch)
     character(*), intent(in) :: directory
     character(:), allocatable, intent(out) :: switch  !! empty: none
@@ -131,12 +131,12 @@ contains
     call remove_file(switch_path(directory), ignored)
   end subroutine read_switch
 
-  !> Whether the run ends now, and why. Places are those of the state, contact forces the last ones
-  !> known. The first condition of the deck that holds is told.
+  !> Test the end conditions of the deck. Positions are those of the state, contact forces the
+  !> latest known. The first condition that holds is reported.
   subroutine find_early_end(model, state, last, reason)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    logical, intent(inout) :: last   !! the run ends anyway; or for a condition of the deck
+    logical, intent(inout) :: last   !! the run ends anyway; on return also by a condition
     character(:), allocatable, intent(inout) :: reason !! of the end
     character(:), allocatable :: found
     real(wp) :: way
@@ -156,9 +156,10 @@ contains
             to_text(ending%id)//' is in contact (*TERMINATION_NODE)'
         case (end_body_displacement)
           found = beyond('body '//to_text(ending%id)//' has gone to ', 'displacement ', &
-            state%rigids(ending%where)%place(ending%direction), ending, ' (*TERMINATION_BODY)')
+            state%rigids(ending%where)%displacement(ending%direction), ending, &
+            ' (*TERMINATION_BODY)')
         case (end_body_distance)
-          way = norm2(state%rigids(ending%where)%place(1:2))
+          way = norm2(state%rigids(ending%where)%displacement(1:2))
           if (way >= ending%most) found = 'body '//to_text(ending%id)//' has gone ' &
             //to_text(way)//' (*TERMINATION_BODY)'
         case (end_contact)
@@ -171,7 +172,7 @@ contains
     end do
   end subroutine find_early_end
 
-  !> What is said of a value at or beyond its bounds; empty within them.
+  !> Report of a value at or beyond its bounds; empty within them.
   pure function beyond(what, of, value, ending, keyword) result(found)
     character(*), intent(in) :: what, of, keyword
     real(wp), intent(in) :: value
@@ -183,7 +184,8 @@ contains
     found = what//of//merge('x', 'y', ending%direction == 1)//' = '//to_text(value)//keyword
   end function beyond
 
-  !> An interface that has borne no force for long enough.
+  !> Test whether an interface has had no force for long enough, and update the time since which it
+  !> has none.
   subroutine check_contact_end(ending, state, since, found)
     type(end_condition_t), intent(in) :: ending
     type(state_t), intent(in) :: state
@@ -205,7 +207,7 @@ contains
       //' bears no force (*TERMINATION_CONTACT)'
   end subroutine check_contact_end
 
-  !> Contact force on a node.
+  !> Contact force on a node, of all interfaces.
   pure function force_on(state, node) result(force)
     type(state_t), intent(in) :: state
     integer, intent(in) :: node

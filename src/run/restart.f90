@@ -1,13 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> Writing restart files between two cycles or steps.
+!> Restart files: state, driver memory, progress of the outputs and the deck between two cycles or
+!> steps, so that a restarted run gives the same bits as an uninterrupted one.
 !>
-!> There a run is its state, what its driver hands from cycle to cycle besides, how far its
-!> outputs are, and the deck. All of that is written, so that the run that goes on makes the same
-!> bits as one that was not interrupted.
-!>
-!> Of a state that was read every index lies within what it points at, and every list is one.
-!> Shapes, and bounds that one component has, are looked at where they are visited. A restart file
-!> may come from elsewhere: its checksum says that it is whole, not that it is sound.
+!> A state that was read is checked: indices lie within their arrays, lists contain each entry once.
+!> Shapes and bounds of single components are checked where they are visited. A restart file may
+!> come from elsewhere: its checksum shows that it is complete, not that it is valid.
 module restart_m
   use archive_m, only : archive_t
   use checksum_m, only : add_bytes, checksum_text
@@ -33,18 +30,18 @@ module restart_m
   private
   public :: write_restarts, remove_old_files, visit_run, visit_outputs, check_state
 
-  !> Bounds on numbered files and on the length of a job's name.
+  !> Bounds on numbered files and on the length of a job name.
   integer, parameter :: most_dumps = 1000000000, longest_name = 4096
 
 contains
 
-  !> Write restart files: the next numbered one, or the running one in place of the one before.
+  !> Write restart files: the next numbered one, or the running one in place of its predecessor.
   subroutine write_restarts(wanted, state, monitor, error, driver)
     logical, intent(in) :: wanted(:)   !! numbered_file, running_file
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
-    class(visited_t), intent(inout), optional :: driver !! what it remembers besides the state
+    class(visited_t), intent(inout), optional :: driver !! memory of the driver besides the state
     type(archive_t) :: archive
     character(:), allocatable :: effective_deck, path, line
     integer :: kind
@@ -72,8 +69,7 @@ contains
     if (present(driver)) call lap(monitor%clock, phase_output)
   end subroutine write_restarts
 
-  !> The deck as run, from the file that the run has written at its start: a large one is not kept
-  !> in memory.
+  !> Read the deck as run from the file written at the start; a large deck is not held in memory.
   subroutine read_effective_deck(restarts, archive, text)
     type(restarts_t), intent(in) :: restarts
     type(archive_t), intent(inout) :: archive
@@ -89,15 +85,15 @@ contains
       checksum = 0
       call add_bytes(checksum, text)
       if (checksum_text(checksum) /= restarts%effective_deck_checksum) &
-        reason = 'it has been changed'
+        reason = 'the file has been changed'
     else
-      reason = 'it can not be read'
+      reason = 'the file cannot be read'
     end if
-    if (allocated(reason)) call archive%fail('no restart file can be written, since it ' &
-      //'would hold the deck as run, '//path//': '//reason, status_files)
+    if (allocated(reason)) call archive%fail('cannot write a restart file without ' &
+      //'the deck as run, '//path//': '//reason, status_files)
   end subroutine read_effective_deck
 
-  !> Write or read what is known of the run.
+  !> Write or read the data of the run: deck, job, program, method.
   subroutine visit_run(archive, restarts, effective_deck)
     type(archive_t), intent(inout) :: archive
     type(restarts_t), intent(inout) :: restarts
@@ -122,11 +118,10 @@ contains
     call archive%leave()
   end subroutine visit_run
 
-  !> Write or read how far the outputs are.
+  !> Write or read the progress of the outputs.
   subroutine visit_outputs(archive, time, dt, monitor)
     type(archive_t), intent(inout) :: archive
-    real(wp), intent(in) :: time, dt    !! of the state before, and the step within which it was
-                                        !! early for an output
+    real(wp), intent(in) :: time, dt    !! of the state before, and its output tolerance
     type(monitor_t), intent(inout) :: monitor
     real(wp), allocatable :: times(:)
     integer :: k
@@ -147,22 +142,21 @@ contains
 
   contains
 
-    !> One of them.
+    !> Write or read one schedule, and resume it.
     subroutine visit_kept_schedule(name, schedule)
       character(*), intent(in) :: name
       type(schedule_t), intent(inout) :: schedule !! planned from the deck
-      type(schedule_t) :: kept
+      type(schedule_t) :: stored
 
-      kept = schedule
-      call archive%part(name, kept)
-      if (archive%validates) call resume_schedule(kept, time, dt, schedule)
+      stored = schedule
+      call archive%part(name, stored)
+      if (archive%validates) call resume_schedule(stored, time, dt, schedule)
     end subroutine visit_kept_schedule
 
   end subroutine visit_outputs
 
-  !> Remove what an earlier run of this name has left, the running file and the numbered ones that
-  !> follow without a gap: files that it has not finished, and whole ones too unless the run goes
-  !> on.
+  !> Remove restart files of an earlier run of this name, the running file and consecutive numbered
+  !> ones: unfinished files, and complete ones unless the run is a restart.
   subroutine remove_old_files(restarts, error)
     type(restarts_t), intent(in) :: restarts
     type(error_t), allocatable, intent(out) :: error
@@ -184,8 +178,8 @@ contains
     end do
   end subroutine remove_old_files
 
-  !> Look at a whole state; the first thing that is wrong is told as an error of the archive. A
-  !> phase before time zero is one that the deck has, with a velocity of each node.
+  !> Check a state that was read; the first fault becomes the error of the archive. A relaxation in
+  !> progress must be one of the deck, with a velocity of each node.
   subroutine check_state(model, state, archive)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state      !! of the shapes of the model
@@ -210,7 +204,7 @@ contains
     end do
   end subroutine check_state
 
-  !> The memory of one interface.
+  !> Check the memory of one interface.
   subroutine check_contact(contact, memory, folder, archive)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -233,7 +227,7 @@ contains
     folder//'master_status/', archive)
   end subroutine check_contact
 
-  !> The list of points: as many in all its arrays, and nodes of the interface.
+  !> Check a list of contact points: equal lengths, and nodes of the interface.
   subroutine check_points(memory, points, folder, archive)
     type(contact_state_t), intent(in) :: memory
     type(contact_points_t), intent(in) :: points
@@ -262,8 +256,7 @@ contains
       .and. points%master_nodes <= n_local), 'numbers that no node of the interface has')
   end subroutine check_points
 
-  !> Springs of ties, as many as the deck makes: their points follow each other, nodes and places
-  !> are those of the interface.
+  !> Check tie springs: their points are consecutive, nodes and sites belong to the interface.
   subroutine check_ties(memory, folder, archive)
     type(contact_state_t), intent(in) :: memory
     character(*), intent(in) :: folder
@@ -285,7 +278,7 @@ contains
     end associate
   end subroutine check_ties
 
-  !> Status of contact points over the segments of the other surface.
+  !> Check the status of contact points against the segments of the other surface.
   subroutine check_status(status, n_contact_point, n_segment, folder, archive)
     type(contact_status_t), intent(in) :: status
     integer, intent(in) :: n_contact_point !! points, where there are any

@@ -1,15 +1,15 @@
 ! SPDX-License-Identifier: MIT
-!> Fills a snapshot from the state, only what is due. Forces, energies and motion of one cycle
-!> belong to one instant: v(n) = v(n-1/2) + a(n) dt/2.
+!> Fill a snapshot from the state as far as it is due. Forces, energies and motion belong to one
+!> instant: v(n) = v(n-1/2) + a(n) dt/2.
 module snapshot_filling_m
   use kinds_m, only : wp, long
   use block_state_m, only : block_state_t
-  use common_motion_m, only : fill_common
+  use coupled_nodes_m, only : fill_coupled_nodes
   use loads_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows
   use element_mass_m, only : element_shares
-  use element_state_m, only : add_part_energies, is_gone, stress_of_slot, plastic_strain_of_slot, &
-    find_heat, hoop_strain_of_slot
+  use element_state_m, only : add_part_energies, is_eroded, stress_of_slot, &
+    plastic_strain_of_slot, find_heat, hoop_strain_of_slot
   use contacts_m, only : has_shear
   use controls_m, only : is_asked
   use history_tables_m, only : table_elout, table_matsum, table_rbdout, table_spcforc
@@ -30,11 +30,11 @@ module snapshot_filling_m
 
 contains
 
-  !> Allocate what this run can ask for: motion of all nodes only where a
-  !> file or an override needs it.
+  !> Allocate the arrays that the run needs: motion of all nodes only where a file or a constraint
+  !> needs it.
   subroutine start_snapshot(model, has_history, snapshot)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: has_history !! some part keeps a plastic strain
+    logical, intent(in) :: has_history !! some part has a plastic strain
     type(snapshot_t), intent(out) :: snapshot
     integer :: n_node, n_element, i
 
@@ -49,7 +49,7 @@ contains
     if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
     if (allocated(model%transducers)) allocate (snapshot%transducers(size(model%transducers)))
     allocate (snapshot%interfaces(size(model%contacts)), snapshot%slaves(size(model%contacts)))
-    ! Nodes with mass and a fixed degree of freedom by rising id, where their forces are asked for.
+    ! Nodes with mass and a fixed degree of freedom by rising id, if spcforc is asked for.
     allocate (snapshot%supports(0))
     if (is_asked(model%controls%output%histories(table_spcforc))) &
       snapshot%supports = pack([(i, i=1, n_node)], mark_supports(model))
@@ -78,23 +78,24 @@ contains
       snapshot%contact_slip(n_node), snapshot%contact_state(n_node), source=0.0_wp)
   end subroutine start_snapshot
 
-  !> Whether the motion of all nodes is kept: for files, or since that of some comes from elsewhere.
-  pure function stores_motion(model) result(keeps)
+  !> Whether the motion of all nodes is stored: for files, or since some of it does not follow from
+  !> nodal forces.
+  pure function stores_motion(model) result(stores)
     type(model_t), intent(in) :: model
-    logical :: keeps
+    logical :: stores
 
-    keeps = is_asked(model%controls%output%plot) .or. size(model%controls%output%history_nodes) &
+    stores = is_asked(model%controls%output%plot) .or. size(model%controls%output%history_nodes) &
       > 0 .or. size(model%conditions%motions) > 0 .or. size(model%rigids) > 0 &
       .or. model%controls%implicit%is_on .or. allocated(model%conditions%common_motions)
   end function stores_motion
 
-  !> Displacement, velocity and acceleration of the present instant, where they are kept.
-  !> `velocity_next` is v(n+1/2) of the prescribed degrees of freedom.
+  !> Fill displacement, velocity and acceleration at t(n), where they are stored.
   subroutine fill_motion(model, state, damping, velocity_next, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: damping(2)       !! D per direction
-    real(wp), intent(in) :: velocity_next(:) !! (n_motion)
+    real(wp), intent(in) :: velocity_next(:) !! (n_motion) v(n+1/2) of the prescribed degrees of
+                                             !! freedom
     type(snapshot_t), intent(inout) :: snapshot
     real(wp) :: velocity(2), acceleration(2)
     integer :: i
@@ -111,7 +112,7 @@ contains
       snapshot%acceleration(:, i) = acceleration
     end do
     if (allocated(model%conditions%common_motions)) &
-      call fill_common(model, state, damping, snapshot%velocity, snapshot%acceleration)
+      call fill_coupled_nodes(model, state, damping, snapshot%velocity, snapshot%acceleration)
     if (.not. allocated(snapshot%displacement) .or. .not. state%dt > 0.0_wp) return
     ! Prescribed degrees of freedom: the mean of their two half-step velocities.
     do i = 1, size(model%conditions%motions)
@@ -127,7 +128,7 @@ contains
     end do
   end subroutine fill_motion
 
-  !> D of a node: that of all nodes, or its own where the deck damps parts.
+  !> D of a node: global, or its own where the deck damps parts.
   pure function damping_at(state, damping, node) result(d)
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: damping(2)
@@ -138,7 +139,7 @@ contains
     if (allocated(state%node_damping)) d = state%node_damping(:, node)
   end function damping_at
 
-  !> Velocity and acceleration of a node that moves freely, at the present instant.
+  !> Velocity and acceleration of a free node at t(n).
   pure subroutine find_motion(n_special, state, damping, node, velocity, acceleration)
     integer, intent(in) :: n_special
     type(state_t), intent(in) :: state
@@ -160,7 +161,7 @@ contains
     end do
   end subroutine find_motion
 
-  !> The energy account; motion must be filled where it is kept.
+  !> Fill the energies; motion must be filled where it is stored.
   subroutine fill_energies(model, state, damping, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -204,10 +205,10 @@ contains
       energies%friction = sum(state%contacts%friction%work) - sum(state%contacts%friction%stored)
       if (allocated(state%walls)) energies%friction = energies%friction &
         + sum(state%walls%dissipated)
-      energies%made = sum(max(0.0_wp, -state%contacts%monitor%balance))
+      energies%created = sum(max(0.0_wp, -state%contacts%monitor%balance))
       energies%external_work = state%external_work + sum(state%contacts%interference%work)
       energies%initial = state%initial_energy
-      if (model%erodes) energies%eroded = state%elements%erosion%took
+      if (model%erodes) energies%eroded = state%elements%erosion%removed_energy
       if (.not. energies%has_mass_scaling) return
       call added_masses(model, state%elements, added, own)
       snapshot%parts%added_mass = added
@@ -217,7 +218,7 @@ contains
   end subroutine fill_energies
 
   !> Add kinetic energy and momentum of some nodes. Products first, then sums: fused multiply-adds
-  !> in one copy of a loop and not in another would make the bits depend on where a block ends.
+  !> in one copy of a loop and not in another would make the bits depend on the block length.
   pure subroutine add_motion(n, mass, velocity, kinetic, momentum)
     integer, intent(in) :: n
     real(wp), intent(in) :: mass(n), velocity(2, n)
@@ -235,8 +236,7 @@ contains
     end do
   end subroutine add_motion
 
-  !> Kinetic energy, momentum and mass of each part (energies are there already),
-  !> where velocities are kept.
+  !> Fill kinetic energy, momentum and mass of each part, where velocities are stored.
   subroutine fill_parts(model, elements, snapshot)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -265,8 +265,7 @@ contains
     end do
   end subroutine fill_parts
 
-  !> Resultants of all interfaces, where those of contact behind ties are with what these have; and
-  !> what all do to the surface of a transducer, and how many of its nodes carry force.
+  !> Fill the resultants of all interfaces and transducers.
   subroutine fill_interfaces(model, state, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -297,23 +296,23 @@ contains
     end do
   end subroutine fill_interfaces
 
-  !> Fields of a plot state and the rows of slave nodes.
+  !> Fill the fields of a plot state and the rows of slave nodes.
   subroutine fill_plot(model, state, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(snapshot_t), intent(inout) :: snapshot
     integer :: i, k, slot
 
-    ! The slots are walked, whose streams and nodes lie side by side.
+    ! Loop over slots, whose streams are contiguous.
     do slot = 1, model%layout%n_slot
       i = model%layout%slot_element(slot)
       if (i == 0) cycle
       snapshot%stress(:, i) = 0.0_wp
-      if (.not. is_gone(state%elements, slot)) snapshot%stress(1:4, i) = stress_of_slot(model, &
+      if (.not. is_eroded(state%elements, slot)) snapshot%stress(1:4, i) = stress_of_slot(model, &
         state%motion, state%elements, slot)
       if (allocated(snapshot%plastic_strain)) &
         snapshot%plastic_strain(i) = plastic_strain_of_slot(model, state%elements, slot)
-      if (model%erodes) snapshot%eroded(i) = merge(1.0_wp, 0.0_wp, is_gone(state%elements, slot))
+      if (model%erodes) snapshot%eroded(i) = merge(1.0_wp, 0.0_wp, is_eroded(state%elements, slot))
       if (model%is_axisymmetric) snapshot%hoop_strain(i) = hoop_strain_of_slot(model, &
         state%motion, slot)
       if (allocated(snapshot%damage)) call find_heat(model, state%elements, slot, &
@@ -348,8 +347,8 @@ contains
             min(snapshot%gap(rows%node(k)), rows%gap(k))
         end do
         if (.not. allocated(rows%friction_result)) cycle
-        ! Nodes of several have the sum of their tractions, the largest slip and the last of their
-        ! states.
+        ! A node of several interfaces has the sum of tractions, the largest slip and the highest
+        ! state.
         do k = 1, size(memory%nodes)
           associate (friction_result => rows%friction_result(k), node => memory%nodes(k))
             associate (traction => snapshot%contact_traction(node), &
@@ -364,7 +363,7 @@ contains
     end do
   end subroutine fill_plot
 
-  !> Rows of slave nodes, of each interface of the model alone.
+  !> Fill the rows of slave nodes of each interface.
   subroutine fill_slaves(model, state, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -372,7 +371,7 @@ contains
     integer :: i
 
     do i = 1, size(model%contacts)
-      ! Its nodes may be others than those of the state before.
+      ! Erosion may have changed its nodes.
       if (model%erodes) snapshot%slaves(i) = slave_result_t()
       call slave_rows(state%outlines(i), state%motion, state%contacts(i), snapshot%slaves(i))
     end do

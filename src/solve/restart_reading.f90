@@ -1,18 +1,18 @@
 ! SPDX-License-Identifier: MIT
-!> Going on from a restart file: what it says of the run, its state and its outputs, and
-!> the files of the run before.
+!> Restart: read the data of the run, its state and the progress of its outputs from a restart file,
+!> and the files of the run before.
 module restart_reading_m
   use archive_m, only : archive_t
   use errors_m, only : error_t, raise, status_input
   use explicit_cycle_m, only : explicit_cycle_t, read_cycle
   use implicit_forces_m, only : start_trial
   use implicit_start_m, only : implicit_memory_t
-  use remote_state_m, only : inside_tests_t, remote_t, remote_forgetters
+  use remote_state_m, only : inside_tests_t, remote_t, remote_releases
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use history_file_m, only : plan_histories
-  use element_losses_m, only : resume_outlines
+  use element_erosion_m, only : restore_outlines
   use monitor_m, only : monitor_t, start_schedules, output_reach
   use progress_m, only : show_note
   use restart_file_m, only : open_restart
@@ -27,13 +27,13 @@ module restart_reading_m
   public :: read_restart_run, find_restart_states, read_restart_state, check_other_components, &
     restore_outputs
 
-  !> Part of the last step by which an implicit run may pass its end; an
-  !> explicit one may by all of it.
+  !> Share of the last step by which an implicit run may exceed its end time; an explicit run may
+  !> exceed it by a whole step.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
 contains
 
-  !> Open the file to go on from; what it says of the run, and the deck as run.
+  !> Open a restart file and read the data of the run and the deck as run.
   subroutine read_restart_run(path, restarts, effective_deck, error)
     character(*), intent(in) :: path
     type(restarts_t), intent(inout) :: restarts
@@ -47,7 +47,7 @@ contains
     if (allocated(restarts%source%error)) error = restarts%source%error
   end subroutine read_restart_run
 
-  !> Look for the results file whose states the run takes over; before anything is written.
+  !> Find the results file whose states the run takes over, before any file is written.
   subroutine find_restart_states(restarts, model, path, error)
     type(restarts_t), intent(inout) :: restarts
     type(model_t), intent(in) :: model
@@ -66,13 +66,13 @@ contains
     end if
   end subroutine find_restart_states
 
-  !> Read the state into one that is started from the model: that tells what the file must hold.
+  !> Read the state into one that is set up from the model, which determines the expected shapes.
   subroutine read_restart_state(source, model, state, error, remote, inside_tests)
     type(archive_t), intent(inout) :: source
     type(model_t), intent(in) :: model
     type(state_t), intent(out) :: state
     type(error_t), allocatable, intent(out) :: error
-    type(remote_t), intent(inout), optional :: remote !! what other processes have
+    type(remote_t), intent(inout), optional :: remote !! nodes and slots of other processes
     type(inside_tests_t), intent(inout), optional :: inside_tests
     type(log_t) :: silence
 
@@ -82,7 +82,7 @@ contains
     if (model%controls%implicit%is_on) &
       allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
     if (model%erodes) then
-      ! Shapes of interfaces follow from which elements are there.
+      ! The surfaces of interfaces follow from the status of the elements.
       call source%enter('state')
       call source%enter('elements')
       call source%enter('erosion')
@@ -90,9 +90,9 @@ contains
       call source%leave()
       call source%leave()
       call source%leave()
-      if (.not. allocated(source%error)) call resume_outlines(model, state)
+      if (.not. allocated(source%error)) call restore_outlines(model, state)
     end if
-    if (present(remote)) source%releases = remote_forgetters(remote)
+    if (present(remote)) source%releases = remote_releases(remote)
     if (.not. allocated(source%error)) call source%part('state', state)
     if (.not. allocated(source%error)) call check_state(model, state, source)
     if (.not. allocated(source%error)) call resume_contacts(state)
@@ -105,12 +105,12 @@ contains
     end if
   end subroutine read_restart_state
 
-  !> Look at what is read once the files are open, so that a file that is refused has emptied none:
-  !> how far the outputs are, and what the driver keeps.
+  !> Check the components that are read after the files are opened, so that a refused file leaves
+  !> all files as they are: progress of the outputs and driver data.
   subroutine check_other_components(source, model, state, error)
     type(archive_t), intent(inout) :: source
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state     !! that of the file
+    type(state_t), intent(in) :: state     !! of the restart file
     type(error_t), allocatable, intent(out) :: error
     type(monitor_t) :: planned
     type(implicit_memory_t) :: memory
@@ -129,7 +129,7 @@ contains
     if (allocated(source%error)) error = source%error
   end subroutine check_other_components
 
-  !> Read how far the outputs are; the rows and states before the restart go into the new files.
+  !> Restore the progress of the outputs; rows and states before the restart go into the new files.
   subroutine restore_outputs(model, state, monitor, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -150,8 +150,8 @@ contains
       if (restarts%finds_states) then
         call copy_states(monitor%results, model, restarts%state_times, error)
       else if (size(restarts%state_times) > 0) then
-        call warn(monitor%log, 'there is no results file of the run before the restart: the new ' &
-          //'one has the states from time '//to_text(state%time)//' on')
+        call warn(monitor%log, 'no results file of the run before the restart was found: the ' &
+          //'new one begins at time '//to_text(state%time))
       end if
     end associate
   end subroutine restore_outputs

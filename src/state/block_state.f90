@@ -1,36 +1,38 @@
 ! SPDX-License-Identifier: MIT
-!> Everything about elements that changes, as long streams over the element slots, so that a chunk
-!> of a stream is contiguous and goes to a kernel without a copy.
+!> Element state: streams over the element slots, so that the part of a chunk is contiguous and a
+!> kernel receives it without a copy.
 module block_state_m
   use kinds_m, only : wp
   use visitor_m, only : visited_t, visitor_t, of_slots, of_columns, of_stresses, of_chunks, &
     new_chunks, fixed_slots, fixed_columns
   implicit none
   private
-  public :: block_state_t, erosion_state_t, stays, has_left, has_gone
+  public :: block_state_t, erosion_state_t, intact, newly_eroded, eroded_before
 
-  !> An element is there; it has left in this cycle and nobody has heard of it; it has gone.
-  integer, parameter :: stays = 0, has_left = 1, has_gone = 2
+  !> Status of an element: intact; eroded in this cycle, not yet counted; eroded.
+  integer, parameter :: intact = 0, newly_eroded = 1, eroded_before = 2
 
-  !> Only in runs some elements of which may leave.
+  !> Erosion: status and energies of eroded elements. Allocated only where a material or the step
+  !> may erode elements.
   type, extends(visited_t) :: erosion_state_t
-    integer, allocatable :: status(:)      !! (n_slot) one of the constants above
-    integer, allocatable :: n_gone(:)      !! (n_chunk) elements of a chunk that are not there
-    real(wp), allocatable :: hourglass(:)  !! (n_slot) work of its hourglass forces, J/m
-    real(wp), allocatable :: internal(:)   !! (n_slot) of those that have left: what they took along
+    integer, allocatable :: status(:)      !! (n_slot) intact, newly_eroded or eroded_before
+    integer, allocatable :: n_removed(:)   !! (n_chunk) eroded elements of each chunk
+    real(wp), allocatable :: hourglass(:)  !! (n_slot) work of the hourglass forces, J/m
+    real(wp), allocatable :: internal(:)   !! (n_slot) internal energy at erosion, J/m
     real(wp), allocatable :: impulse(:)    !! (n_slot) integral of (sigma_1 - SIGTH)^2
-    integer, allocatable :: n_element(:)   !! (n_node) elements that each node still has
-    integer, allocatable :: n_eroded(:)    !! (n_part) elements that have gone
-    real(wp) :: first_time = 0.0_wp        !! when the first one went, s
-    real(wp) :: least_step = 0.0_wp        !! step below which ERODE takes elements, s
-    real(wp) :: took(4) = 0.0_wp           !! energies that went with them: kinetic, internal,
-                                           !! hourglass, contact springs, J/m
+    integer, allocatable :: n_element(:)   !! (n_node) elements left at each node
+    integer, allocatable :: n_eroded(:)    !! (n_part) eroded elements
+    real(wp) :: first_time = 0.0_wp        !! time of the first erosion, s
+    real(wp) :: least_step = 0.0_wp        !! stable step below which ERODE erodes an element, s
+    real(wp) :: removed_energy(4) = 0.0_wp !! eroded energy: kinetic, internal, hourglass, contact
+                                           !! springs, J/m
   contains
     procedure :: visit => visit_erosion
   end type erosion_state_t
 
   !> Element history. The volumetric stress follows from the displacement, so only the deviator is
-  !> stored: s_zz = -(s_xx + s_yy). Work and limits end with the last tile: rigid parts have none.
+  !> stored, with s_zz = -(s_xx + s_yy). Streams of works and limits end with the last tile, since
+  !> rigid parts have none.
   type, extends(visited_t) :: block_state_t
     real(wp), allocatable :: reference(:, :)  !! (n_slot, 6) X31 Y31 X42 Y42 and h.X, h.Y at time
                                               !! zero
@@ -63,32 +65,36 @@ module block_state_m
                                                 !! forces
     real(wp), allocatable :: viscous_work(:)    !! (n_chunk) accumulated work of the bulk viscosity
     real(wp), allocatable :: viscous_pressure(:) !! (n_slot) bulk viscosity of the last step, Pa;
-                                                !! only where parts without an equation of state
-                                                !! have any
-    real(wp), allocatable :: mass_ratio(:)      !! (n_slot) mass of an element over that of its
-                                                !! density; only where masses are scaled
-    real(wp), allocatable :: retardation(:)     !! (n_slot) viscosity over stiffness, s; it and
-    real(wp), allocatable :: damping_stress(:)  !! (16 n_slot) its stress of the last step, chunk by
-                                                !! chunk, point by point: deviator xx, yy, xy, then
-                                                !! mean; and
-    real(wp), allocatable :: damping_work(:)    !! (n_chunk) its work only where the deck damps by
-                                                !! stiffness
+                                                 !! allocated where a part without equation of state
+                                                 !! has it
+    real(wp), allocatable :: mass_ratio(:)      !! (n_slot) scaled mass over the mass from the
+                                                !! density; allocated with mass scaling
+    real(wp), allocatable :: retardation(:)     !! (n_slot) stiffness damping: viscosity over
+                                                !! stiffness, s; this, damping_stress and
+                                                !! damping_work are allocated where the deck damps
+                                                !! by stiffness
+    real(wp), allocatable :: damping_stress(:)  !! (16 n_slot) damping stress of the last step, Pa:
+                                                !! chunk by chunk, point by point, deviator xx, yy,
+                                                !! xy, then mean
+    real(wp), allocatable :: damping_work(:)    !! (n_chunk) accumulated work of the damping stress,
+                                                !! J/m
     real(wp), allocatable :: time_limit(:)      !! (n_chunk) smallest L/c of the last step, s
     real(wp), allocatable :: volume_limit(:)    !! (n_chunk) smallest A/A0 (or J of a point) of the
                                                 !! last step
-    real(wp), allocatable :: volume_change(:)   !! (n_chunk) largest change of ln V of an element in
-                                                !! the last step, without its sign
-    real(wp), allocatable :: mass_shares(:, :)  !! (4, n_slot) of exposed quads in the masses of
-                                                !! their nodes (`find_exposed`); only where some are
-    type(erosion_state_t), allocatable :: erosion !! only where elements may leave the mesh
+    real(wp), allocatable :: volume_change(:)   !! (n_chunk) largest |change of ln V| of an element
+                                                !! in the last step
+    real(wp), allocatable :: mass_shares(:, :)  !! (4, n_slot) shares of exposed quads in the masses
+                                                !! of their nodes (`find_exposed`); allocated where
+                                                !! there are any
+    type(erosion_state_t), allocatable :: erosion !! allocated where elements may erode
   contains
     procedure :: visit => visit_elements
   end type block_state_t
 
 contains
 
-  !> Its components, but for shares in masses, which are made anew. The shape of an element that
-  !> leaves the mesh becomes that of padding.
+  !> Visit the components of the element state. `mass_shares` is derived from the mesh; the
+  !> reference shape of an eroded element becomes that of padding.
   subroutine visit_elements(self, visitor)
     class(block_state_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -116,13 +122,13 @@ contains
     if (allocated(self%erosion)) call visitor%part('erosion', self%erosion)
   end subroutine visit_elements
 
-  !> Its components.
+  !> Visit the components of the erosion state.
   subroutine visit_erosion(self, visitor)
     class(erosion_state_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
 
     call visitor%visit('status', self%status, of_slots)
-    call visitor%visit('n_gone', self%n_gone, of_chunks)
+    call visitor%visit('n_removed', self%n_removed, of_chunks)
     call visitor%visit('hourglass', self%hourglass, of_slots)
     call visitor%visit('internal', self%internal, of_slots)
     call visitor%visit('impulse', self%impulse, of_slots)
@@ -130,7 +136,7 @@ contains
     call visitor%visit('n_eroded', self%n_eroded)
     call visitor%visit('first_time', self%first_time)
     call visitor%visit('least_step', self%least_step)
-    call visitor%fixed('took', self%took)
+    call visitor%fixed('removed_energy', self%removed_energy)
   end subroutine visit_erosion
 
 end module block_state_m

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Nodes and elements of other processes, whose state this one does not keep, and those whose state
-!> it has; and what only the first process can tell the others.
+!> Ranges of nodes and element slots whose state other processes hold, and data that the first
+!> process computes for all.
 module remote_state_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
@@ -9,27 +9,30 @@ module remote_state_m
   use visitor_m, only : of_nodes
   implicit none
   private
-  public :: remote_t, known_nodes, known_slots, remote_forgetters, inside_tests_t
+  public :: remote_t, known_nodes, known_slots, remote_releases, inside_tests_t
 
-  !> Two ranges of each: before and behind those of this process.
+  !> Remote nodes and slots in two ranges each: below and above those of this process.
   type :: remote_t
-    integer :: nodes(4) = 0, slots(4) = 0
-    real(wp), allocatable :: mass(:) !! (n_node) lumped masses, of nodes that this process knows,
-                                     !! until the state takes them
-    real(wp), allocatable :: penalties(:, :) !! (3, interfaces) of slave, master and nodes, that the
-                                     !! first process has found
+    integer :: nodes(4) = 0, slots(4) = 0 !! first and last node of the lower, then of the upper
+                                          !! range; slots likewise
+    real(wp), allocatable :: mass(:) !! (n_node) lumped masses of the nodes of this process, until
+                                     !! they are moved into the state
+    real(wp), allocatable :: penalties(:, :) !! (3, interfaces) penalties of slave, master and
+                                             !! nodes, from the first process
   end type remote_t
 
-  !> Those of all interfaces.
+  !> Results of the point-in-body tests of the first search, of all interfaces, in the order of the
+  !> tests.
   type :: inside_tests_t
-    logical :: are_given = .false.
-    integer :: n = 0                     !! asked for so far
-    logical, allocatable :: is_inside(:) !! with room for more where they are kept
+    logical :: are_given = .false. !! the results come from the first process
+    integer :: n = 0                     !! tests so far
+    logical, allocatable :: is_inside(:) !! (n or more) whether the point lies inside
   end type inside_tests_t
 
 contains
 
-  !> Ranges of nodes whose state a process has: all, but for those of others.
+  !> Ranges of nodes whose state this process holds: all nodes except the remote ones, (first and
+  !> last; 3 ranges).
   pure function known_nodes(model, remote) result(ranges)
     type(model_t), intent(in) :: model
     type(remote_t), intent(in), optional :: remote
@@ -40,7 +43,8 @@ contains
       remote%nodes(3) - 1, remote%nodes(4) + 1, model%mesh%n_node], [2, 3])
   end function known_nodes
 
-  !> The same of slots.
+  !> Ranges of element slots whose state this process holds: all slots except the remote ones,
+  !> (first and last; 3 ranges).
   pure function known_slots(model, remote) result(ranges)
     type(model_t), intent(in) :: model
     type(remote_t), intent(in), optional :: remote
@@ -51,8 +55,9 @@ contains
       remote%slots(3) - 1, remote%slots(4) + 1, model%layout%n_slot], [2, 3])
   end function known_slots
 
-  !> Who gives up the memory of others' nodes and slots: before and behind those of this process.
-  pure function remote_forgetters(remote) result(releases)
+  !> Visitors that release the memory of remote nodes and slots: one for the range below, one for
+  !> the range above.
+  pure function remote_releases(remote) result(releases)
     type(remote_t), intent(in) :: remote
     type(memory_release_t) :: releases(2)
     integer :: k
@@ -64,6 +69,6 @@ contains
       call choose_slots(releases(k), (remote%slots(2*k - 1:2*k) + [chunk_size - 1, 0]) &
         /chunk_size, chunk_size, .true., .false.)
     end do
-  end function remote_forgetters
+  end function remote_releases
 
 end module remote_state_m

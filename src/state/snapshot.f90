@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> One instant as the output layer sees it: plain arrays in deck order and rows of the histories,
-!> and its energies. The drivers fill it, only for what is due.
+!> Results of one instant for the output layer: arrays in deck order, rows of the histories and
+!> energies. The drivers fill what is due.
 module snapshot_m
   use kinds_m, only : wp
   implicit none
@@ -9,8 +9,8 @@ module snapshot_m
     slave_result_t, wall_result_t, friction_result_t, element_result_t, body_result_t, &
     section_result_t
 
-  !> What rounding leaves of a sum that vanishes, as a share of its largest term: terms are sums
-  !> over nodes, elements and thousands of cycles.
+  !> Round-off in a sum that vanishes, as a share of its largest term: the terms are sums over
+  !> nodes, elements and thousands of cycles.
   real(wp), parameter :: round_off = 1.0e-12_wp
 
   !> Energies at one instant, J per metre of thickness.
@@ -20,12 +20,12 @@ module snapshot_m
     real(wp) :: hourglass = 0.0_wp
     real(wp) :: viscous = 0.0_wp       !! dissipated by the bulk viscosity
     real(wp) :: damping = 0.0_wp       !! dissipated by global damping
-    real(wp) :: contact = 0.0_wp       !! minus the work of the contact forces, but for the next
+    real(wp) :: contact = 0.0_wp       !! minus the work of contact forces, without friction
     real(wp) :: friction = 0.0_wp      !! dissipated by friction, of interfaces and rigid walls
-    real(wp) :: made = 0.0_wp          !! what contact springs gave beyond what they took, over the
-                                       !! interfaces where they did; no part of the sum
+    real(wp) :: created = 0.0_wp       !! energy created by contact springs, summed over the
+                                       !! interfaces that created any; not part of the total
     real(wp) :: external_work = 0.0_wp !! work of loads and prescribed motion
-    real(wp) :: eroded(4) = 0.0_wp     !! what went with elements: kinetic, internal, hourglass,
+    real(wp) :: eroded(4) = 0.0_wp     !! energy of eroded elements: kinetic, internal, hourglass,
                                        !! contact springs
     real(wp) :: leapfrog = 0.0_wp      !! v(n-1/2).M v(n+1/2)/2 minus the kinetic energy, in
                                        !! explicit runs
@@ -40,14 +40,15 @@ module snapshot_m
     real(wp) :: slave_force(2) = 0.0_wp
     real(wp) :: master_force(2) = 0.0_wp
     integer :: n_active = 0
-    real(wp) :: energy = 0.0_wp  !! minus the work of the contact springs; of tangential ones what
-                                 !! they store
+    real(wp) :: energy = 0.0_wp  !! minus the work of the contact springs; of tangential springs
+                                 !! their stored energy
     real(wp) :: friction = 0.0_wp !! dissipated by friction
-    real(wp) :: damping = 0.0_wp !! minus that of the damping of contact
+    real(wp) :: damping = 0.0_wp !! minus the work of contact damping
     real(wp) :: stored = 0.0_wp  !! potential of the springs
     real(wp) :: estimate = 0.0_wp !! root of sum (p - row stress)^2 a over sum p^2 a
-    real(wp) :: row_energy = 0.0_wp !! elastic energy of the elements behind what is pressed
-    real(wp) :: step_limit = 0.0_wp !! stable step of elements and its springs; 0: none is known
+    real(wp) :: row_energy = 0.0_wp !! elastic energy of the elements at loaded segments
+    real(wp) :: step_limit = 0.0_wp !! stable step of elements and springs of the interface; 0: not
+                                    !! known
   end type interface_result_t
 
   !> Sums over one part.
@@ -76,18 +77,18 @@ module snapshot_m
     integer :: part = 0                !! user id
     real(wp) :: stress(4) = 0.0_wp     !! xx yy zz xy; of axisymmetric bodies rr zz hoop rz
     real(wp) :: plastic_strain = 0.0_wp
-    logical :: is_gone = .false.       !! it has left the mesh
+    logical :: is_eroded = .false.     !! the element has eroded
   end type element_result_t
 
-  !> Motion of one rigid body: x and y of its centre of mass, and the turn about z.
+  !> Motion of one rigid body: x and y of its centre of mass, and the rotation about z.
   type :: body_result_t
-    real(wp) :: place(2) = 0.0_wp
+    real(wp) :: position(2) = 0.0_wp
     real(wp) :: displacement(3) = 0.0_wp
     real(wp) :: velocity(3) = 0.0_wp
     real(wp) :: acceleration(3) = 0.0_wp
   end type body_result_t
 
-  !> A cross section: what its elements do to its nodes.
+  !> Resultants of one cross section: forces of its elements on its nodes.
   type :: section_result_t
     real(wp) :: force(2) = 0.0_wp
     real(wp) :: moment = 0.0_wp    !! about z through the centroid
@@ -97,29 +98,31 @@ module snapshot_m
 
   !> Friction at a node of an interface.
   type :: friction_result_t
-    real(wp) :: traction = 0.0_wp !! on the node, along the walking direction of its chain
-    real(wp) :: slip = 0.0_wp     !! of the node over the other side, along that, of the whole run
+    real(wp) :: traction = 0.0_wp !! on the node, along the walking direction of its surface
+    real(wp) :: slip = 0.0_wp     !! of the node relative to the other side, along the same
+                                  !! direction, accumulated over the run
     integer :: state = 0          !! 0 open, 1 stick, 2 slip, 3 tied, 4 broken
   end type friction_result_t
 
-  !> Slave nodes of one interface in walking order; all arrays (n_slave) but the last two.
+  !> Slave nodes of one interface in walking order; all arrays (n_slave) except the last two.
   type :: slave_result_t
     integer, allocatable :: node(:)        !! node indices
-    real(wp), allocatable :: arc_length(:) !! along the slave chain
+    real(wp), allocatable :: arc_length(:) !! along the slave surface
     real(wp), allocatable :: gap(:)        !! of segments; 0 when unpaired
-    real(wp), allocatable :: offset(:)     !! added to it where pressure is formed: arcs and entry
-    real(wp), allocatable :: pressure(:)   !! normal force / competence length, 0 where inactive
-    real(wp), allocatable :: force(:, :)   !! (2, n_slave) contact force from all points
-    real(wp), allocatable :: length(:)     !! competence length, current
-    real(wp), allocatable :: row_stress(:) !! pressure of the elements behind, carried to the face
-    real(wp), allocatable :: master_pressure(:) !! (n_master) as `pressure`, on the other side
+    real(wp), allocatable :: offset(:)     !! added to the gap where pressure is formed: arcs, entry
+    real(wp), allocatable :: pressure(:)   !! normal force over tributary length, 0 where inactive
+    real(wp), allocatable :: force(:, :)   !! (2, n_slave) contact force
+    real(wp), allocatable :: length(:)     !! tributary length, current
+    real(wp), allocatable :: row_stress(:) !! pressure in the elements at the surface, extrapolated
+                                           !! to the segment
+    real(wp), allocatable :: master_pressure(:) !! (n_master) as `pressure`, of the master nodes
     type(friction_result_t), allocatable :: friction_result(:) !! (n_slave + n_master) nodes of both
-                                                               !! sides; only where there is
-                                                               !! friction
+                                                               !! sides; allocated with friction
   end type slave_result_t
 
-  !> The instant. Node arrays are in model order (the writer maps through mesh%deck_node); element
-  !> arrays in deck order. Arrays that nothing in the deck asks for are not there.
+  !> Results of one instant. Node arrays are in model order (the writer maps through
+  !> mesh%deck_node), element arrays in deck order. Arrays are allocated where the deck asks for
+  !> them.
   type :: snapshot_t
     real(wp) :: time = 0.0_wp
     real(wp) :: dt = 0.0_wp
@@ -131,13 +134,16 @@ module snapshot_m
     real(wp), allocatable :: contact_force(:, :) !! (2, n_node)
     real(wp), allocatable :: contact_pressure(:) !! (n_node)
     real(wp), allocatable :: gap(:)              !! (n_node)
-    real(wp), allocatable :: contact_traction(:) !! (n_node), this and the next two only where some
-    real(wp), allocatable :: contact_slip(:)     !! interface has friction
-    real(wp), allocatable :: contact_state(:)
+    real(wp), allocatable :: contact_traction(:) !! (n_node) contact_traction, contact_slip and
+                                                 !! contact_state are allocated where an interface
+                                                 !! has friction
+    real(wp), allocatable :: contact_slip(:)     !! (n_node)
+    real(wp), allocatable :: contact_state(:) !! (n_node)
     real(wp) :: mean_velocity(2) = 0.0_wp        !! momentum over mass, of all nodes
-    integer :: by_dt2ms = 0                      !! 1: no element has a smaller step than DT2MS
-    integer :: slowest(2) = 0                    !! ids of the element that rules the step and of
-                                                 !! its part, 0 = none
+    integer :: by_dt2ms = 0                      !! 1: no element has a smaller stable step than
+                                                 !! DT2MS
+    integer :: slowest(2) = 0                    !! ids of the element that determines the step and
+                                                 !! of its part, 0 = none
     integer, allocatable :: supports(:)          !! nodes with a fixed degree of freedom, by rising
                                                  !! id
     real(wp), allocatable :: reaction(:, :)      !! (2, n_support) force of the constraint on the
@@ -145,15 +151,15 @@ module snapshot_m
     real(wp), allocatable :: stress(:, :)        !! (6, n_element) xx yy zz xy yz xz
     real(wp), allocatable :: plastic_strain(:)   !! (n_element)
     real(wp), allocatable :: hoop_strain(:)      !! (n_element) of axisymmetric bodies
-    real(wp), allocatable :: temperature(:)      !! (n_element) this and the next only where some
-    real(wp), allocatable :: damage(:)           !! material keeps them
-    real(wp), allocatable :: eroded(:)           !! (n_element) 1: has left the mesh; only where
-                                                 !! elements may
+    real(wp), allocatable :: temperature(:)      !! (n_element) temperature and damage are allocated
+                                                 !! where a material has them
+    real(wp), allocatable :: damage(:)           !! (n_element)
+    real(wp), allocatable :: eroded(:)           !! (n_element) 1: eroded; allocated where elements
+                                                 !! may erode
     type(interface_result_t), allocatable :: interfaces(:)
-    type(interface_result_t), allocatable :: transducers(:) !! forces alone; only where the deck has
-                                                 !! any
+    type(interface_result_t), allocatable :: transducers(:) !! forces alone
     type(part_result_t), allocatable :: parts(:)
-    type(wall_result_t), allocatable :: walls(:) !! only where the deck has any
+    type(wall_result_t), allocatable :: walls(:) !! allocated where the deck has rigid walls
     type(element_result_t), allocatable :: history_elements(:) !! only where elout is asked for
     type(body_result_t), allocatable :: bodies(:) !! only where rbdout is asked for
     real(wp), allocatable :: boundary_force(:, :) !! (3, n_boundary) x, y and moment about z
@@ -161,13 +167,13 @@ module snapshot_m
     real(wp), allocatable :: group_force(:, :)    !! (2, nodes of all force groups)
     real(wp), allocatable :: group_work(:)
     type(section_result_t), allocatable :: sections(:) !! only where secforc is asked for
-    type(slave_result_t), allocatable :: slaves(:) !! one per interface, then per contact behind a
-                                                 !! tie
+    type(slave_result_t), allocatable :: slaves(:) !! one per interface
   end type snapshot_t
 
 contains
 
-  !> Sum of all that the body holds and has dissipated; in explicit runs what leap-frog keeps.
+  !> Sum of stored, dissipated and eroded energies; in explicit runs with the leap-frog term, so
+  !> that the sum is conserved.
   pure function total_energy(energies) result(total)
     type(energies_t), intent(in) :: energies
     real(wp) :: total
@@ -177,7 +183,7 @@ contains
       + sum(energies%eroded)
   end function total_energy
 
-  !> total / (initial + external work); 1 when both vanish against the terms that they are sums of.
+  !> Energy ratio total/(initial + external work); 1 where both vanish to round-off.
   pure function energy_ratio(energies) result(ratio)
     type(energies_t), intent(in) :: energies
     real(wp) :: ratio

@@ -18,30 +18,29 @@ module state_m
   private
   public :: state_t, relaxation_state_t
 
-  !> A phase of relaxation that goes on.
+  !> State of a dynamic relaxation in progress.
   type, extends(visited_t) :: relaxation_state_t
     integer :: n = 0                      !! cycles so far, 0 where it has not begun or is over
-    real(wp) :: time = 0.0_wp             !! of its own clock: that of the run stands at zero
+    real(wp) :: time = 0.0_wp             !! time of the relaxation, s; the time of the run stays
+                                          !! zero
     real(wp) :: most = 0.0_wp             !! largest kinetic energy
-    real(wp), allocatable :: velocity(:, :) !! (2, n_node) with which the run will begin
+    real(wp), allocatable :: velocity(:, :) !! (2, n_node) initial velocities of the run
   contains
     procedure :: visit => visit_relaxation
   end type relaxation_state_t
 
-  !> One wall.
+  !> State of one rigid wall.
   type, extends(visited_t) :: wall_state_t
-    real(wp), allocatable :: force(:) !! (nodes of the wall) what it pushes with along its normal
-                                      !! now, N/m
-    real(wp), allocatable :: speed(:) !! (nodes of the wall) velocity along its normal before that,
-                                      !! m/s
-    real(wp), allocatable :: friction(:)   !! (nodes of the wall, none without friction) what it
-                                           !! holds back with along its tangent now, N/m
-    real(wp), allocatable :: slip_speed(:) !! (as `friction`) velocity along the tangent before
-                                           !! that, m/s
-    real(wp) :: impulse = 0.0_wp      !! of all its nodes so far, N s/m
-    real(wp) :: work = 0.0_wp         !! on all its nodes so far, J/m; negative: lost in impacts
-                                      !! and in friction
-    real(wp) :: dissipated = 0.0_wp   !! by friction so far, J/m
+    real(wp), allocatable :: force(:) !! (nodes of the wall) normal force on each node, N/m
+    real(wp), allocatable :: speed(:) !! (nodes of the wall) normal velocity before the force, m/s
+    real(wp), allocatable :: friction(:)   !! (nodes of the wall, none without friction) tangential
+                                           !! force on each node, N/m
+    real(wp), allocatable :: slip_speed(:) !! (as `friction`) tangential velocity before the force,
+                                           !! m/s
+    real(wp) :: impulse = 0.0_wp      !! accumulated normal impulse, N s/m
+    real(wp) :: work = 0.0_wp         !! accumulated work on the nodes, J/m; negative: dissipated by
+                                      !! impacts and friction
+    real(wp) :: dissipated = 0.0_wp   !! accumulated dissipation by friction, J/m
   contains
     procedure :: visit => visit_wall
   end type wall_state_t
@@ -50,64 +49,69 @@ module state_m
   type, extends(visited_t) :: state_t
     integer :: cycle = 0
     real(wp) :: time = 0.0_wp
-    real(wp) :: dt = 0.0_wp                    !! step that leads away from this state
-    real(wp) :: dt_before = 0.0_wp             !! step that led here, 0 at the start
-    real(wp), allocatable :: motion(:, :)      !! (4, n_node) u_x, u_y, v_x, v_y: one load a node
+    real(wp) :: dt = 0.0_wp                    !! step from t(n) to t(n+1)
+    real(wp) :: dt_before = 0.0_wp             !! step from t(n-1) to t(n), 0 at the start
+    real(wp), allocatable :: motion(:, :)      !! (4, n_node) u_x, u_y, v_x, v_y
     real(wp), allocatable :: mass(:)           !! (n_node) lumped mass
     real(wp), allocatable :: inverse_mass(:, :) !! (2, n_node) 1/m, 0 where the motion is prescribed
-    real(wp), allocatable :: contact_mass(:)   !! (n_special) mass that contact feels: lumped, or of
-                                               !! a rigid body
+    real(wp), allocatable :: contact_mass(:)   !! (n_special) mass in contact: lumped, or of a rigid
+                                               !! body
     real(wp), allocatable :: force_special(:, :) !! (2, n_special) contact + external force
-    real(wp), allocatable :: external(:, :)    !! (2, n_special) external force; only where the deck
-                                               !! has loads
+    real(wp), allocatable :: external(:, :)    !! (2, n_special) external force; allocated where the
+                                               !! deck has loads
     real(wp), allocatable :: force_slots(:, :) !! (2, force slots) internal force, tile by tile
-    real(wp), allocatable :: internal_force(:, :) !! (2, n_node) divergence of stress; of interior
+    real(wp), allocatable :: internal_force(:, :) !! (2, n_node) divergence of stress; at interior
                                                   !! nodes only in cycles that write
-    real(wp), allocatable :: prescribed_velocity(:) !! (n_motion) v(n-1/2), v(n+1/2) once the cycle
-                                                    !! knows it
-    real(wp), allocatable :: previous_velocity(:, :) !! (2, n_node) v(n-3/2), v(n-1/2) once the work
-                                                   !! of damping is summed; only in damped runs
-    real(wp), allocatable :: node_damping(:, :) !! (2, n_node) D of each node; only where the deck
-                                                !! damps parts
-    real(wp), allocatable :: previous_damping(:, :) !! (2, n_node) that of the step before
+    real(wp), allocatable :: prescribed_velocity(:) !! (n_motion) v(n-1/2); v(n+1/2) from the end of
+                                                    !! the cycle
+    real(wp), allocatable :: previous_velocity(:, :) !! (2, n_node) v(n-3/2); v(n-1/2) once the
+                                                     !! damping work is summed; allocated in damped
+                                                     !! runs
+    real(wp), allocatable :: node_damping(:, :) !! (2, n_node) D of each node, 1/s; allocated where
+                                                !! the deck damps parts
+    real(wp), allocatable :: previous_damping(:, :) !! (2, n_node) `node_damping` of the previous
+                                                    !! step
     real(wp) :: previous_dt = 0.0_wp           !! step of v(n-3/2), s
-    real(wp), allocatable :: acceleration(:, :) !! (2, n_node) of the implicit driver, whose v and a
-                                                !! belong to the instant of u
+    real(wp), allocatable :: acceleration(:, :) !! (2, n_node) implicit driver: v and a belong to
+                                                !! the instant of u
     real(wp) :: body_acceleration(2) = 0.0_wp  !! of *LOAD_BODY at `time`
     type(relaxation_state_t) :: relaxation     !! of the phase before time zero
     type(block_state_t) :: elements
     type(contact_state_t), allocatable :: contacts(:)
-    type(contact_estimate_t), allocatable :: estimates(:) !! of the interfaces of the deck
-    type(contact_t), allocatable :: outlines(:) !! interfaces with the surfaces that are left
+    type(contact_estimate_t), allocatable :: estimates(:) !! error estimates of the interfaces of
+                                                          !! the deck
+    type(contact_t), allocatable :: outlines(:) !! interfaces with their current surfaces, without
+                                                !! eroded elements
     type(rigid_state_t), allocatable :: rigids(:)
-    type(wall_state_t), allocatable :: walls(:) !! only where the deck has any
+    type(wall_state_t), allocatable :: walls(:) !! allocated where the deck has rigid walls
     real(wp), allocatable :: boundary_force(:, :) !! (3, n_boundary) x, y and moment about z of the
-                                               !! rows of bndout; this and the next only where the
-                                               !! deck asks for it
-    real(wp), allocatable :: boundary_work(:)  !! (n_boundary) what they have done so far
-    integer :: boundary_since = 0              !! cycle in which it began
-    real(wp), allocatable :: group_force(:, :) !! (2, n) internal force of the nodes of nodfor; this
-                                               !! and the next two only where the deck asks for it
+                                                  !! rows of bndout; this and boundary_work are
+                                                  !! allocated where the deck asks for bndout
+    real(wp), allocatable :: boundary_work(:)  !! (n_boundary) accumulated work, J/m
+    integer :: boundary_since = 0              !! cycle in which the accumulation begins
+    real(wp), allocatable :: group_force(:, :) !! (2, n) internal force of the nodes of nodfor; the
+                                               !! three group arrays are allocated where the deck
+                                               !! asks for nodfor
     real(wp), allocatable :: group_velocity(:, :) !! (2, n) v(n-1/2)
     real(wp), allocatable :: group_work(:)     !! (n)
-    real(wp), allocatable :: cut_force(:, :)   !! (8, n) by elements of cross sections on their
-                                               !! corners, x and y of each; only where the deck
-                                               !! has sections
-    real(wp), allocatable :: quiet_since(:)    !! (ends of the run) time since which an interface
-                                               !! bears no force, below 0: it does; only where
-                                               !! the deck has any
+    real(wp), allocatable :: cut_force(:, :)   !! (8, n) forces of the elements of cross sections on
+                                               !! their corners, x and y of each; allocated where
+                                               !! the deck has cross sections
+    real(wp), allocatable :: quiet_since(:)    !! (end conditions) time since which an interface has
+                                               !! had no force, s; below 0: it has force. Allocated
+                                               !! where the deck has end conditions
     real(wp) :: external_work = 0.0_wp
     real(wp) :: damping_work = 0.0_wp
     real(wp) :: initial_energy = 0.0_wp
-    real(wp) :: largest_energy = 0.0_wp !! largest |initial energy + external work| so far; only
-                                        !! where there is contact in an explicit run
+    real(wp) :: largest_energy = 0.0_wp !! largest |initial energy + external work| so far; explicit
+                                        !! runs with contact
   contains
     procedure :: visit => visit_state
   end type state_t
 
 contains
 
-  !> Its components.
+  !> Visit the components of the state.
   subroutine visit_state(self, visitor)
     class(state_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -154,13 +158,13 @@ contains
     call visitor%visit('largest_energy', self%largest_energy)
   end subroutine visit_state
 
-  !> Values that a history asks for. The run that goes on may ask for them anew: they begin at 0
-  !> then.
+  !> Visit accumulated values of a history. If the restarted run asks for other rows, they begin at
+  !> zero.
   subroutine visit_asked(visitor, name, values, is_new)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout) :: values(:)
-    logical, intent(out) :: is_new !! they begin here
+    logical, intent(out) :: is_new !! the values begin at zero here
     real(wp), allocatable :: kept(:)
 
     is_new = .false.
@@ -171,7 +175,7 @@ contains
     if (allocated(values) .and. .not. is_new) values = kept
   end subroutine visit_asked
 
-  !> Vectors that a history asks for, in the same way.
+  !> Visit vectors of a history. If the restarted run asks for other rows, they begin at zero.
   subroutine visit_asked_table(visitor, name, values)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
@@ -185,7 +189,7 @@ contains
     if (all(shape(kept) == shape(values))) values = kept
   end subroutine visit_asked_table
 
-  !> Its components.
+  !> Visit the components of the relaxation state.
   subroutine visit_relaxation(self, visitor)
     class(relaxation_state_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -196,7 +200,7 @@ contains
     call visitor%visit('velocity', self%velocity, any_length)
   end subroutine visit_relaxation
 
-  !> Its components.
+  !> Visit the components of the wall state.
   subroutine visit_wall(self, visitor)
     class(wall_state_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

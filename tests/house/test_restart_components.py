@@ -20,15 +20,15 @@ EXEMPT = {
     "schedule_t": {"end_time": "from the deck, which may change it", "curve": "kept as two arrays"},
     "histories_t": {"tables": "rows one table after another"},
     "explicit_cycle_t": dict.fromkeys((
-        "writes", "finished", "last", "due", "leap", "sums", "tile_states", "pressing", "common", "rates", "checks", "halo",
+        "writes", "finished", "last", "due", "leap", "sums", "tile_states", "pressure_steps", "common", "rates", "checks", "halo",
         "asked", "active", "velocity", "displacement", "freed"), EACH_CYCLE) | dict.fromkeys((
             "plots", "partition", "first_check", "recent", "failures", "reason", "error"), "of each run") | dict.fromkeys((
-                "refines", "presses", "timed_motions"), OF_THE_DECK) | {"n_eroded_seen": "of the state"},
+                "refines", "has_pressures", "timed_motions"), OF_THE_DECK) | {"n_eroded_seen": "of the state"},
     "implicit_memory_t": {"written": "of another state"},
     "step_control_t": {"next": "planned anew", "is_last": "planned anew", "end_time": "from the deck, which may change it"}
     | dict.fromkeys(("is_automatic", "least", "most", "few", "many", "changes"), OF_THE_DECK),
     "step_t": dict.fromkeys(("is_dynamic", "alpha_m", "alpha_f", "gamma", "beta"), OF_THE_DECK) | dict.fromkeys(
-        ("time", "dt", "equations", "slips_on", "prescribed"), "set in each step") | {"old_force": "formed from those of trial_t"},
+        ("time", "dt", "equations", "starts_slipping", "prescribed"), "set in each step") | {"old_force": "formed from those of trial_t"},
     "trial_t": {"motion": "of the step that is over", "elements": "those of the state", "contacts": "those of the state",
                 "slots": "formed with each force", "before": "used up before a file is written"},
     "mesh_t": {"deck_node": "the order of results, which the first process writes"},

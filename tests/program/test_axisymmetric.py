@@ -124,9 +124,9 @@ def hollow(way, points, implicit=False):
 def test_nodes_beyond_the_axis_are_told_once(exe, tmp_path, scene):
     (tmp_path / "job.k").write_text(hollow(**scene))
     done = run(exe, tmp_path, "i=job.k", "d=out")
-    assert done.stderr.count("have passed through the axis") == 1
+    assert done.stderr.count("has crossed the axis") == 1
     (tmp_path / "job.k").write_text(hollow(**(scene | {"way": 0.1 * scene["way"]})))
-    assert "through the axis" not in run(exe, tmp_path, "i=job.k", "d=out").stderr
+    assert "crossed the axis" not in run(exe, tmp_path, "i=job.k", "d=out").stderr
 
 
 def test_radial_loads_on_the_axis_are_told(exe, tmp_path):

@@ -12,7 +12,7 @@ from test_restart import assert_same, part_of, with_files
 STOCK = "*CONTACT_2D_AUTOMATIC_"
 MATERIALS = {"steel": (7.85e-9, 2.1e5, 0.3), "aluminium": (2.7e-9, 7.0e4, 0.33), "brass": (8.5e-9, 1.0e5, 0.35),
              "lead": (11.34e-9, 1.6e4, 0.42), "rubber": (1.1e-9, 5.0, 0.49)}
-OBEYS = "the step obeys its springs, since the deck leaves penalty and step to the program"
+OBEYS = "the time step follows its springs, since penalty and step have their defaults"
 
 
 def blow(keyword, upper, lower, form=13, contact=(1, 2), end=2.0e-5):
@@ -65,7 +65,7 @@ def test_a_written_penalty_and_a_written_step_keep_their_warning(slideline, tmp_
         done = slideline(*words, deck=deck)
         assert done.returncode == 0, done.stderr
         log = (tmp_path / "job.log").read_text()
-        assert OBEYS not in log and log.count("its penalty demands a time step of at most") == 1
+        assert OBEYS not in log and log.count("its penalty requires a time step of at most") == 1
 
 
 def hard_on_soft(factor=1.0, modulus=1.0e10, layers=False, n=6, wide=1, ecdt=0, rows=1.0e-3):
@@ -99,13 +99,13 @@ def fall(slideline, tmp_path):
         parts = columns(tmp_path / name / "job.matsum.csv")
         speed = np.array([float(p) for p, k in zip(parts["momentum_y"], parts["part"]) if k == "1"]) / 250.0
         log = (tmp_path / name / "job.log").read_text()
-        return log, told(log, "its springs have stored up to"), speed[-1]
+        return log, told(log, "its springs stored up to"), speed[-1]
     return run
 
 
 def named(line):
     """What the line of a stock keyword names: a factor, and the step that bears it."""
-    factor, step = re.search(r"SFACT (\S+), or PEN with PUNIT 2, would do, with the step of the springs \(ECDT (\d) of", line).groups()
+    factor, step = re.search(r"SFACT (\S+), or PEN with PUNIT 2, with the step of the springs \(ECDT (\d) of", line).groups()
     return {"factor": float(factor), "ecdt": int(step)}
 
 
@@ -116,7 +116,7 @@ def test_springs_that_store_much_of_a_blow_on_a_soft_body_are_told(slideline, tm
     assert float(found[1]) == pytest.approx(5.0 / (1.0 + 1.0e-4), rel=1.0e-4)
     line, = lines
     assert line.strip().startswith("warning:")
-    stored, share, bodies = (float(text) for text in re.search(r"up to (\S+), (\S+) % of .* sides, (\S+): springs give", line).groups())
+    stored, share, bodies = (float(text) for text in re.search(r"up to (\S+), (\S+) % of .* sides, (\S+): the springs return", line).groups())
     assert stored == pytest.approx(numbers(tmp_path / "stock/job.sleout.csv", "stored").max(), rel=1.0e-6)
     assert bodies == pytest.approx(numbers(tmp_path / "stock/job.glstat.csv", "internal").max(), rel=1.0e-6)
     assert share == pytest.approx(100.0 * stored / bodies, abs=0.01) and share > 50.0
@@ -124,10 +124,10 @@ def test_springs_that_store_much_of_a_blow_on_a_soft_body_are_told(slideline, tm
     assert fall("layers", layers=True)[1] == lines
     rest = part_of(tmp_path / "stock", tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
     assert slideline("r=rest/job.dump01.h5").returncode == 0
-    assert told((rest / "job.log").read_text(), "its springs have stored up to") == lines
+    assert told((rest / "job.log").read_text(), "its springs stored up to") == lines
     # Plot states alone show it too.
     line, = fall("plots", rows=1.0)[1]
-    assert float(re.search(r" sides, (\S+): springs", line)[1]) == pytest.approx(bodies, rel=0.05)
+    assert float(re.search(r" sides, (\S+): the springs", line)[1]) == pytest.approx(bodies, rel=0.05)
 
 
 @pytest.mark.parametrize("modulus, warns, scene, stock, right", [

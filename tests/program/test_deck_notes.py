@@ -54,7 +54,7 @@ def test_a_history_of_nothing_is_named(slideline, tmp_path, name, needed, card):
 def test_histories_that_the_model_has_nothing_for_are_named(slideline, tmp_path):
     """No rigid body, no wall: no file, a line of the log and no warning."""
     status, said = said_by(slideline, tmp_path, *(f"*DATABASE_{name}\n1.0e-4" for name in ("RBDOUT", "RWFORC", "SPCFORC")))
-    assert status == 0 and "\nno file, since the model has nothing for it: rwforc, rbdout\n" in said, said
+    assert status == 0 and "\nrequested without content in the model, not written: rwforc, rbdout\n" in said, said
     assert "warning" not in said and (tmp_path / "out/job.spcforc.csv").exists()
 
 

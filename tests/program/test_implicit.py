@@ -74,7 +74,7 @@ def test_free_body_is_named(slideline, tmp_path):
     done = slideline("d=x", deck=deck)
     assert done.returncode == 2
     assert NORMAL not in done.stdout
-    found = re.search(r"singular.*: node (\d+) moves freely in ([xy])", done.stderr)
+    found = re.search(r"singular.*: node (\d+) is free to move in ([xy])", done.stderr)
     assert found, done.stderr
     assert int(found.group(1)) in nodes and found.group(2) == "x"
     assert last_state(tmp_path / "x") == (0.0, 0.0)
@@ -87,7 +87,7 @@ def test_the_loose_one_of_two_bodies_is_named(slideline):
     deck.fix(held[:3], x=1, y=1).fix(loose[::3], x=1)  # one side: no turn is free
     done = slideline("d=x", deck=deck.output(glstat=0.1))
     assert done.returncode == 2
-    found = re.search(r"node (\d+) moves freely in ([xy])", done.stderr)
+    found = re.search(r"node (\d+) is free to move in ([xy])", done.stderr)
     assert found, done.stderr
     assert int(found.group(1)) in loose and found.group(2) == "y"
 
@@ -101,7 +101,7 @@ def test_body_let_go_keeps_the_last_converged_state(slideline, tmp_path):
         deck.add("*BOUNDARY_PRESCRIBED_MOTION_NODE", (int(node), 1, 2, 1, 1.0, 0, 0.25, 0.0))
     done = slideline("d=x", deck=deck.output(glstat=1.0, plot=1.0))
     assert done.returncode == 2
-    assert "moves freely in x" in done.stderr
+    assert "is free to move in x" in done.stderr
     assert last_state(tmp_path / "x") == pytest.approx((0.25, 0.25))
 
 
@@ -120,7 +120,7 @@ def test_body_pulled_off_what_it_rests_on(slideline, tmp_path, dynamic):
         assert done.returncode == 0, done.stderr
         return
     assert done.returncode == 2
-    found = re.search(r"node (\d+) moves freely in ([xy])", done.stderr)
+    found = re.search(r"node (\d+) is free to move in ([xy])", done.stderr)
     assert found, done.stderr
     assert int(found.group(1)) in upper and found.group(2) == "y"
     assert last_state(tmp_path / "x") == pytest.approx((0.5, 0.5))
@@ -163,7 +163,7 @@ def test_contact_at_the_start_is_told_once(slideline, tmp_path, dynamic):
     assert done.returncode == 0, done.stderr
     # Steps this long take the work of the springs by a rule that is not exact: the dynamic run ends with warnings of that.
     told = [line.removeprefix("warning: ") for line in done.stderr.splitlines()
-            if not (dynamic and re.search("created energy|the energy ratio", line))]
+            if not (dynamic and re.search("created energy|energy ratio", line))]
     assert len(told) == 1, told
     # Competence length 1/3 of a slave node inside; 1/6 at the first one, whose depth is the same.
     assert re.search(r"interface 1: initial penetration at 3 points, deepest at node 16: 4\.0+E-03, force of that "
@@ -174,7 +174,7 @@ def test_contact_at_the_start_is_told_once(slideline, tmp_path, dynamic):
     assert done.returncode == 0, done.stderr
     assert [entry["message"] for entry in json.loads(done.stdout)["findings"]] == told
     done = slideline("r=x/job.dump01.h5")
-    assert done.returncode == 0 and "penetration" not in done.stderr, done.stderr
+    assert done.returncode == 0 and "initial penetration" not in done.stderr, done.stderr
 
 
 @pytest.mark.parametrize("kind, energy", [(1, 32.0), (2, 24.0), (3, 56.0), (4, 24.0), (5, 24.0), (6, 24.0), (7, 24.0)])
@@ -210,7 +210,7 @@ def test_constant_step_that_does_not_converge_is_2(slideline, tmp_path):
     done = slideline("d=x", deck=deck)
     assert done.returncode == 2
     assert "no equilibrium" in done.stderr and "3 iterations" in done.stderr
-    assert re.search(r"out of balance at node \d+ in [xy]", done.stderr)
+    assert re.search(r"largest residual at node \d+ in [xy]", done.stderr)
     assert "last converged state is that of time 0" in done.stderr
     assert NORMAL not in done.stdout
     assert last_state(tmp_path / "x") == (0.0, 0.0)
@@ -249,7 +249,7 @@ def test_stick_and_slip_that_cycle_end_the_attempt(slideline, tmp_path, automati
     """Before the last of 40 iterations; a step that may be cut is, and the run goes on."""
     done = slideline("d=x", deck=tilted_on_another(automatic))
     assert done.returncode == (0 if automatic else 2), done.stderr
-    told = re.findall(r"no equilibrium after (\d+) iterations, the last of which cycle between the same states of stick and slip",
+    told = re.findall(r"no equilibrium after (\d+) iterations, which cycle between the same states of stick and slip",
                       (tmp_path / "x" / "job.log").read_text())
     assert told and max(map(int, told)) < 40
     if automatic:
@@ -295,7 +295,7 @@ def test_contact_that_opens_in_an_iteration_cuts_the_step(slideline, tmp_path):
         deck.add("*LOAD_NODE_POINT", (int(node), 2, 1, 1.0))
     done = slideline("d=x", deck=deck.output(glstat=0.08, plot=1.0))
     assert done.returncode == 2
-    assert "moves freely in y" in done.stderr
+    assert "is free to move in y" in done.stderr
     assert 0.499 < last_state(tmp_path / "x")[0] < 0.5001
 
 
@@ -495,12 +495,12 @@ def test_a_jump_past_a_limit_point_is_told(slideline, tmp_path):
     assert done.returncode == 0, done.stderr
     told = re.findall(r"warning: step (\d+) to time (\S+) has passed a limit point", done.stderr)
     assert len(told) == 1, done.stderr
-    assert "prescribed displacement" in done.stderr and "IMASS 1" in done.stderr
+    assert "prescribe a displacement" in done.stderr and "IMASS 1" in done.stderr
     table = tmp_path / "x" / "job.glstat.csv"
     times, ratio = numbers(table, "time"), numbers(table, "energy_ratio")
     after = times >= float(told[0][1]) - 1.0e-6
     assert 0 < int(told[0][0]) and np.all(np.abs(ratio[~after] - 1.0) < 0.02) and np.all(ratio[after] < 0.95)
-    assert "the energy ratio ends at" in done.stderr
+    assert "at the end: energy ratio" in done.stderr
 
 
 def test_a_prescribed_displacement_follows_the_path(slideline, tmp_path):

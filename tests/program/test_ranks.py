@@ -190,10 +190,10 @@ def test_files_are_those_of_one_process(tmp_path, scene):
         assert_same(tmp_path / "one", tmp_path / f"on{n}")
     log = "\n".join(log_of(tmp_path / "one"))
     assert "wake" not in scene or "steps of tiles: " in log
-    assert "leave" not in scene or "elements erode" in log
-    assert "fail" not in scene or "points fail" in log
+    assert "leave" not in scene or "eroded elements: " in log
+    assert "fail" not in scene or "failed point" in log
     assert ("end before" in scene) == ("*TERMINATION_BODY" in log)
-    assert ("by default" in scene) == ("the step obeys its springs" in log)
+    assert ("by default" in scene) == ("the time step follows its springs" in log)
     assert "in each other" not in scene or "deepest at node 1: 3.500000E-02" in log
     assert ("implicit springs" in scene) == ("penalty: implicit springs of" in log)
     if "grows" in scene:

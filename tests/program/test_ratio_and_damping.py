@@ -102,9 +102,9 @@ def test_energies_that_do_not_add_up_are_told_once_while_the_run_goes_on(slideli
         deck.add("*INITIAL_VELOCITY_NODE", (node, 0.06 * (-1) ** (k // 2), 0.2 * (-1) ** (k % 2 + k // 2)))
     done = slideline(deck=deck)
     assert done.returncode == 0, done.stderr
-    told = re.findall(r"warning: at cycle (\d+), time \S+, the energy ratio is (\S+):", done.stderr)
+    told = re.findall(r"warning: at cycle (\d+), time \S+: energy ratio (\S+), unaccounted energy \S+:", done.stderr)
     assert len(told) == 1
     ratio, cycles = (numbers(tmp_path / "job.glstat.csv", name) for name in ("energy_ratio", "cycle"))
     first = int(np.argmax(np.abs(ratio - 1.0) > 0.1))
     assert int(told[0][0]) == cycles[first] and float(told[0][1]) == pytest.approx(ratio[first], rel=1e-6)
-    assert "the energy ratio ends at" in done.stderr
+    assert "at the end: energy ratio" in done.stderr

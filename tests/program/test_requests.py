@@ -166,7 +166,7 @@ def test_switches_of_an_implicit_run(started, tmp_path):
     said = (tmp_path / "said").read_text()
     assert "status (sw2)" in said
     assert said.count("\nrestart file ") == 2
-    assert "d3kil holds none of" in said
+    assert "d3kil holds an unknown word" in said
     assert len(list(folder.glob("*.dump0[12].h5"))) == len(list(folder.glob("*.h5"))) == 2
     times = plot_times(folder)
     assert len(times) == 3 and 0.0 < times[1] < times[2] < 0.5

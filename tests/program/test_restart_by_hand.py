@@ -137,7 +137,7 @@ def test_states_of_another_run_are_not_taken(exe, job, tmp_path, place):
         stream["VTKHDF/Steps/Values"][(count - 1) if place else 0] += 1.0e-7
     before = (folder / "job.vtkhdf").read_bytes()
     done = subprocess.run([exe, f"r={dump}"], cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
-    assert done.returncode == 1 and "does not hold the states before the restart" in done.stderr, done.stderr
+    assert done.returncode == 1 and "does not contain the states before the restart" in done.stderr, done.stderr
     assert (folder / "job.vtkhdf").read_bytes() == before
 
 

@@ -275,7 +275,7 @@ def test_contact_that_pauses_bounds_no_step(slideline, tmp_path):
 def test_steps_of_scaled_masses_stay_with_a_warning(slideline, tmp_path, card, is_bound):
     """DT2MS that scales nothing has no say; one that rules the step keeps it, and the log warns."""
     text, _ = plates(1.0, [(1, 2)], 0.001, card, end=2.0e-7)
-    warned = "may pass each other unseen" in slideline("d=o", "ctype=5", deck=text).stderr
+    warned = "may pass through each other" in slideline("d=o", "ctype=5", deck=text).stderr
     dt = numbers(tmp_path / "o" / "job.glstat.csv", "dt")
     assert warned is not is_bound
     assert (max(dt) <= 0.41 * 0.000125 / 5328.0) if is_bound else dt[1] == pytest.approx(0.9 * 2.5e-8, rel=0.02)

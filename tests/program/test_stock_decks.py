@@ -145,7 +145,7 @@ def test_step_and_penalty_by_default_bring_no_warning(exe, decks, tmp_path):
         done = subprocess.run([exe, f"i={decks / f'stock_{name}.k'}", f"d={tmp_path}", "jobid=job", "quiet=1", "tssfac=0.9",
                                *words], capture_output=True, text=True, timeout=120)
         assert done.returncode == 0, done.stderr
-        return done.stderr.count("demands a time step"), (tmp_path / "job.log").read_text().count("for the built-in penalty")
+        return done.stderr.count("requires a time step"), (tmp_path / "job.log").read_text().count("for the default penalty")
 
     for name, n in (("impact", 1), ("contacts", 5), ("includes", 1)):
         assert said(name) == (0, n)

@@ -260,7 +260,7 @@ def test_error_termination_and_warnings():
     text = """slideline 0.1.0 (Release, GNU)
 title: a <b>bold</b> title
 warning: the step is long
-goes on from the restart file x
+restart from the restart file x
 warning: interface 1: deep & bad
 
  *** element 7 has turned inside out ***
@@ -273,7 +273,7 @@ warning: interface 1: deep & bad
     end = read_ending(text, {}, None, None)
     assert (end.kind, end.reason) == ("error", "element 7 has turned inside out")
     assert (end.time, end.cycle, end.seconds) == (1.25e-3, 12500, 0.195)
-    assert read_ending(text + "goes on from the restart file y\n", {}, None, None).kind == "unfinished"
+    assert read_ending(text + "restart from the restart file y\n", {}, None, None).kind == "unfinished"
 
 
 def test_text_is_escaped(tmp_path):

@@ -6,22 +6,20 @@ module deck_contact_m
   use kinds_m, only : wp
   use text_m, only : shortest
   use log_m, only : to_text
-  use units_m, only : in_units
   use model_m, only : model_t
   use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_nts_mar, &
     type_segmented_mortar, type_missing, type_chosen, contact_t, contact_kind_t, friction_rule_t, &
     kind_text, is_tied, breaks, penalty_per_node, penalty_distributed, penalty_factor, &
-    penalty_share, penalty_implicit, implicit_factor, tie_none, tie_always, tie_breaks, tie_factor
+    penalty_share, penalty_implicit, implicit_factor, tie_always, tie_breaks, tie_factor
   use deck_lines_m, only : deck_t, location_t, line_error, line_warning, given_by
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
-    report_field, reject_field, warn_of_field
+    report_field, warn_of_field
   use deck_edits_m, only : given_number, set_field, rewrite_block
-  use deck_ids_m, only : a_curve
-  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, location_of, read_active_time, &
-    find_id
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, location_of, read_active_time
   use deck_friction_m, only : default_friction_t, read_friction, read_stock_friction, &
     read_penalty_friction, warn_of_rule
+  use deck_interference_m, only : read_interference
   use deck_overrides_m, only : contact_names, find_word, edit_contact
   implicit none
   private
@@ -42,8 +40,6 @@ module deck_contact_m
   character(6), parameter :: active_time(2) = ['TBIRTH', 'TDEATH']
   character(*), parameter :: slideline_keyword = 'CONTACT_2D_SLIDELINE', &
     transducer = 'CONTACT_2D_FORCE_TRANSDUCER'
-  !> Tolerance of the first and last ordinate of an interference curve, 0 and 1.
-  real(wp), parameter :: round_off = 1.0e-12_wp
 
   !> One degree, rad, and the largest turn of segments that stand for arcs where the deck does not
   !> say (SMOOTH 0): 24 segments on a circle turn by 15 degrees.
@@ -239,55 +235,6 @@ contains
     case (1:89); contact%largest_turn = integer_of(cards(3), 'SMOOTH')*degree
     end select
   end subroutine read_slideline
-
-  !> LCINT: the curve of the active share of an initial overlap, from 0 to 1.
-  subroutine read_interference(deck, card, model, contact)
-    type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
-    type(model_t), intent(in) :: model
-    type(contact_t), intent(inout) :: contact
-    integer :: found, n
-
-    if (integer_of(card, 'LCINT') == 0) return
-    if (integer_of(card, 'TIE') /= tie_none) call report_field(deck, card, 'LCINT', &
-      'asks for an interference curve, which ties do not have (a tie keeps its gaps)')
-    if (contact%is_self) call report_field(deck, card, 'LCINT', &
-      'asks for an interference curve, which self contact (SURFB 0) does not have')
-    if (contact%birth > 0.0_wp) call report_field(deck, card, 'LCINT', &
-      'asks for an interference curve, which needs contact from time zero on (TBIRTH 0)')
-    if (is_bad(card, 'LCINT')) return
-    allocate (contact%interference)
-    call find_id(deck, a_curve, card, 'LCINT', found)
-    if (found == 0) return
-    associate (curve => model%curves(found))
-      n = size(curve%ordinate)
-      if (n == 0) return
-      if (abs(curve%ordinate(1)) > round_off) call refuse('begins at ' &
-        //to_text(curve%ordinate(1))//', not at 0')
-      if (abs(curve%ordinate(n) - 1.0_wp) > round_off) call refuse('ends at ' &
-        //to_text(curve%ordinate(n))//', not at 1')
-      if (minval(curve%ordinate) < -round_off .or. maxval(curve%ordinate) > 1.0_wp + round_off) &
-        call refuse('leaves the range from 0 to 1')
-      if (curve%abscissa(1) < 0.0_wp) call refuse('begins at the time ' &
-        //to_text(curve%abscissa(1))//', before the run')
-      if (curve%abscissa(n) > model%controls%end_time) call line_warning(deck, card%line, &
-        'interference'//to_text(contact%id), 'interface '//to_text(contact%id)//': its ' &
-        //'interference curve ends at '//to_text(curve%abscissa(n)) &
-        //in_units(model%controls%units, 'T')//', after the end time; the full overlap is not ' &
-        //'reached')
-      contact%interference = curve
-    end associate
-
-  contains
-
-    !> Report an error of the curve.
-    subroutine refuse(what)
-      character(*), intent(in) :: what
-
-      call reject_field(deck, location_of(card, 'LCINT'), 'is an interference curve that '//what)
-    end subroutine refuse
-
-  end subroutine read_interference
 
   !> *CONTACT_2D_AUTOMATIC_: penalty as a factor on the built-in estimate.
   subroutine read_automatic(deck, cards, contact)

@@ -1,8 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Sparse LU factorisation by UMFPACK (SuiteSparse), for systems too large for a band. This file is
-!> compiled where CMake finds the library; `without_umfpack` holds its counterpart.
+!> Sparse LU factorisation by UMFPACK (SuiteSparse). This file is compiled where CMake finds the
+!> library; `without_umfpack` holds its counterpart.
 !>
-!> UMFPACK takes columns, sparse_t has rows: it is given the transpose and solves with that.
+!> UMFPACK stores columns, sparse_t rows: UMFPACK gets the transpose and solves with the transpose
+!> of that.
 module umfpack_m
   use, intrinsic :: iso_c_binding, only : c_double, c_int, c_null_ptr, c_ptr
   use kinds_m, only : long, wp
@@ -12,31 +13,31 @@ module umfpack_m
   private
   public :: umfpack_t, has_umfpack, factor_umfpack, solve_umfpack, free_umfpack
 
-  !> Whether this program holds UMFPACK.
+  !> UMFPACK is available.
   logical, parameter :: has_umfpack = .true.
 
-  !> Lengths of UMFPACK's arrays of settings and of results, and the places used in them: the
-  !> numbers in umfpack.h plus one.
+  !> Lengths of UMFPACK's arrays of settings and results, and the indices used: the numbers in
+  !> umfpack.h plus one.
   integer, parameter :: n_control = 20, n_info = 90
   integer, parameter :: control_strategy = 6, control_refinement = 8, control_ordering = 11, &
     control_scale = 17
   integer, parameter :: info_lower_entries = 24, info_upper_entries = 25, &
     info_factor_entries = 37, info_smallest_pivot = 72
-  !> Values of settings: pivots on the diagonal where they are good; minimum degree or nested
-  !> dissection; rows as given.
+  !> Settings: pivots on the diagonal where they are good; minimum degree or nested dissection; no
+  !> scaling.
   real(c_double), parameter :: strategy_symmetric = 3, ordering_amd = 1, ordering_metis = 3, &
     scale_none = 0
-  !> From here on nested dissection pays. Seconds for square meshes of quads, minimum degree against
-  !> nested dissection: 20,000 equations 0.13/0.18, 45,000 0.49/0.52, 99,000
-  !> 1.6/1.4 (factors 153/129 MB).
+  !> Equations from which nested dissection pays. Seconds for square meshes of quads, minimum
+  !> degree/nested dissection: 20,000 equations 0.13/0.18, 45,000 0.49/0.52, 99,000 1.6/1.4 (factors
+  !> 153/129 MB).
   integer, parameter :: n_dissected = 60000
-  !> What umfpack_di_solve solves with.
+  !> Systems of umfpack_di_solve.
   integer(c_int), parameter :: as_given = 0, transposed_system = 1
   integer(c_int), parameter :: status_good = 0, status_singular = 1
-  !> Bytes for each entry that the factors are expected to have. Seen at the peak: 9 to 13.
+  !> Bytes per entry of the factors. Observed peak: 9 to 13.
   real(wp), parameter :: bytes_per_entry = 14.0_wp
 
-  !> A factorised matrix. Holds memory of the C library: give it to free_umfpack in the end.
+  !> Sparse LU factors in memory of the C library, to be freed by free_umfpack.
   type :: umfpack_t
     type(c_ptr) :: numeric = c_null_ptr            !! the factors
     integer(c_int), allocatable :: start(:)        !! (n + 1) where each row starts, from 0
@@ -102,13 +103,13 @@ module umfpack_m
       integer(c_int) :: status
     end function umfpack_di_get_determinant
 
-    !> Give the memory of a symbolic factorisation back.
+    !> Free a symbolic factorisation.
     subroutine umfpack_di_free_symbolic(symbolic) bind(c, name='umfpack_di_free_symbolic')
       import :: c_ptr
       type(c_ptr), intent(inout) :: symbolic
     end subroutine umfpack_di_free_symbolic
 
-    !> Give the memory of a numerical factorisation back.
+    !> Free a numerical factorisation.
     subroutine umfpack_di_free_numeric(numeric) bind(c, name='umfpack_di_free_numeric')
       import :: c_ptr
       type(c_ptr), intent(inout) :: numeric
@@ -117,8 +118,8 @@ module umfpack_m
 
 contains
 
-  !> Factorise a compressed matrix with every row holding an entry. `factored` is false where memory
-  !> does not suffice; a zero pivot is no failure, but nothing may be solved with it.
+  !> Factorise a compressed matrix without empty rows. `factored` is false where memory does not
+  !> suffice. A zero pivot is no failure, but the factors cannot be used then.
   subroutine factor_umfpack(matrix, factor, factored)
     type(sparse_t), intent(in) :: matrix
     type(umfpack_t), intent(inout) :: factor !! earlier factors in it are freed
@@ -140,8 +141,7 @@ contains
     status = umfpack_di_symbolic(matrix%n, matrix%n, factor%start, factor%index, factor%entry, &
       symbolic, factor%control, info)
     if (status /= status_good .and. status /= status_singular) return
-    ! Entries of the factors: as counted where pivots are taken from the diagonal; where the pattern
-    ! allows none of that, an upper bound.
+    ! Entries of the factors: as counted for diagonal pivots; else an upper bound.
     entries = info(info_factor_entries)
     if (entries < 0.0_wp) entries = info(info_lower_entries) + info(info_upper_entries)
     factor%bytes = int(bytes_per_entry*entries, long)
@@ -170,7 +170,7 @@ contains
     if (status /= status_good) x = 0.0_wp
   end subroutine solve_umfpack
 
-  !> Give the memory back.
+  !> Free the factors.
   subroutine free_umfpack(factor)
     type(umfpack_t), intent(inout) :: factor
 

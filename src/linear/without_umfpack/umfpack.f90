@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The program without UMFPACK: compiled where CMake does not find the library (or is told not to
-!> look). Nothing is ever factorised here, and `has_umfpack` says so.
+!> Counterpart of `with_umfpack` for builds without UMFPACK: factorisation always fails, and
+!> `has_umfpack` is false.
 module umfpack_m
   use kinds_m, only : long, wp
   use sparse_m, only : sparse_t
@@ -8,10 +8,10 @@ module umfpack_m
   private
   public :: umfpack_t, has_umfpack, factor_umfpack, solve_umfpack, free_umfpack
 
-  !> Whether this program holds UMFPACK.
+  !> UMFPACK is not available.
   logical, parameter :: has_umfpack = .false.
 
-  !> A factorised matrix; here only what others look at.
+  !> Components that other modules read.
   type :: umfpack_t
     real(wp) :: smallest_pivot = 0.0_wp !! absolute value
     integer(long) :: bytes = 0          !! memory of the factors
@@ -20,7 +20,7 @@ module umfpack_m
 
 contains
 
-  !> Refuses.
+  !> Fails, except for an empty system.
   subroutine factor_umfpack(matrix, factor, factored)
     type(sparse_t), intent(in) :: matrix
     type(umfpack_t), intent(inout) :: factor
@@ -40,7 +40,7 @@ contains
     if (transposed .and. factor%bytes > 0) x = 0.0_wp
   end subroutine solve_umfpack
 
-  !> Nothing to give back.
+  !> Nothing to free.
   subroutine free_umfpack(factor)
     type(umfpack_t), intent(inout) :: factor
 

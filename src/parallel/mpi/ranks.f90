@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Processes that share one run: all that is exchanged between them goes through here, by MPI.
-!> src/parallel/serial has the same module for builds without it, with the same declarations: what
-!> is compiled with one of them may be linked with the other. Only one thread of a process comes
-!> here. A process that ends without `leave_ranks` ends the run: the launcher stops the others.
+!> Message passing between the processes of a run, by MPI. src/parallel/serial has the same module
+!> for builds without MPI, with the same declarations: code compiled with one may be linked with the
+!> other. Only one thread of a process calls MPI. A process that ends without `leave_ranks` ends the
+!> run: the launcher stops the others.
 module ranks_m
   use errors_m, only : error_t, raise
   use kinds_m, only : wp, long
@@ -19,15 +19,15 @@ module ranks_m
 
   !> This process among those of the run.
   type :: ranks_t
-    integer :: mine = 0 !! its number, from 0 on; the first one reads, writes and speaks
-    integer :: n = 1    !! how many there are
-    integer(long) :: sent(2) = 0   !! messages to single processes, and bytes in them
-    integer(long) :: joined(2) = 0 !! calls that all take part in, and bytes that came by them
+    integer :: mine = 0 !! number of this process, from 0; process 0 reads and writes files
+    integer :: n = 1    !! number of processes
+    integer(long) :: sent(2) = 0   !! point-to-point messages and their bytes
+    integer(long) :: joined(2) = 0 !! collective calls and the bytes received by them
   end type ranks_t
 
 contains
 
-  !> Begin: who this process is.
+  !> Start MPI and get the number of this process.
   subroutine join_ranks(ranks)
     type(ranks_t), intent(out) :: ranks
     integer :: provided, status
@@ -37,44 +37,44 @@ contains
     call mpi_comm_size(mpi_comm_world, ranks%n, status)
   end subroutine join_ranks
 
-  !> End, once nothing is left to exchange.
+  !> End MPI.
   subroutine leave_ranks()
     integer :: status
 
     call mpi_finalize(status)
   end subroutine leave_ranks
 
-  !> Pieces of an array, one a process, to all of them or to the first.
+  !> Gather an array of which each process has one range, in all processes or in the first.
   subroutine gather_reals(ranks, starts, width, to_all, values)
     type(ranks_t), intent(inout) :: ranks
-    integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
-    integer, intent(in) :: width          !! values of an item
+    integer, intent(in) :: starts(0:)     !! (0:n) first item of each range, then one beyond
+    integer, intent(in) :: width          !! values per item
     logical, intent(in) :: to_all
     real(wp), intent(inout) :: values(*)
-    integer :: counts(0:ranks%n - 1), places(0:ranks%n - 1), status
+    integer :: counts(0:ranks%n - 1), offsets(0:ranks%n - 1), status
 
     counts = width*(starts(1:ranks%n) - starts(0:ranks%n - 1))
-    places = width*(starts(0:ranks%n - 1) - 1) ! values before those of each
+    offsets = width*(starts(0:ranks%n - 1) - 1) ! values before those of each
     if (to_all) then
-      call mpi_allgatherv(mpi_in_place, 0, mpi_datatype_null, values, counts, places, &
+      call mpi_allgatherv(mpi_in_place, 0, mpi_datatype_null, values, counts, offsets, &
         mpi_double_precision, mpi_comm_world, status)
     else if (ranks%mine == 0) then
-      call mpi_gatherv(mpi_in_place, 0, mpi_datatype_null, values, counts, places, &
+      call mpi_gatherv(mpi_in_place, 0, mpi_datatype_null, values, counts, offsets, &
         mpi_double_precision, 0, mpi_comm_world, status)
     else
-      call mpi_gatherv(values(places(ranks%mine) + 1), counts(ranks%mine), mpi_double_precision, &
-        values, counts, places, mpi_double_precision, 0, mpi_comm_world, status)
+      call mpi_gatherv(values(offsets(ranks%mine) + 1), counts(ranks%mine), mpi_double_precision, &
+        values, counts, offsets, mpi_double_precision, 0, mpi_comm_world, status)
     end if
     ranks%joined(1) = ranks%joined(1) + 1
     if (to_all .or. ranks%mine == 0) ranks%joined(2) = ranks%joined(2) &
       + int(real_bytes, long)*(sum(int(counts, long)) - counts(ranks%mine))
   end subroutine gather_reals
 
-  !> Values for some other processes, a message each, against what these have for this one.
+  !> Exchange values with some processes, one message each.
   subroutine exchange_reals(ranks, peers, out_starts, outgoing, in_starts, incoming)
     type(ranks_t), intent(inout) :: ranks
-    integer, intent(in) :: peers(:)       !! their numbers
-    integer, intent(in) :: out_starts(:), in_starts(:) !! (peers + 1) where the values of each start
+    integer, intent(in) :: peers(:)       !! numbers of these processes
+    integer, intent(in) :: out_starts(:), in_starts(:) !! (peers + 1) start of the values of each
     real(wp), intent(in) :: outgoing(*)
     real(wp), intent(inout) :: incoming(*)
     integer, parameter :: tag = 1
@@ -99,7 +99,7 @@ contains
     call mpi_waitall(n_request, requests, mpi_statuses_ignore, status)
   end subroutine exchange_reals
 
-  !> The least of what the processes have, value by value, to all of them.
+  !> Minimum over the processes, value by value, in all of them.
   subroutine reduce_min(ranks, values)
     type(ranks_t), intent(inout) :: ranks
     real(wp), intent(inout), contiguous :: values(:)
@@ -110,7 +110,7 @@ contains
     ranks%joined = ranks%joined + [1_long, int(real_bytes, long)*size(values)]
   end subroutine reduce_min
 
-  !> Values of the first process to all.
+  !> Copy values of the first process to all.
   subroutine broadcast_values(ranks, values)
     type(ranks_t), intent(in) :: ranks
     real(wp), intent(inout), contiguous :: values(:)
@@ -120,8 +120,8 @@ contains
       mpi_comm_world, status)
   end subroutine broadcast_values
 
-  !> An error of any process becomes that of all: where several have one that of the first of them,
-  !> but each keeps its own.
+  !> Give an error of any process to all: of several errors that of the lowest process, while each
+  !> process keeps its own.
   subroutine share_error(ranks, error)
     type(ranks_t), intent(in) :: ranks
     type(error_t), allocatable, intent(inout) :: error

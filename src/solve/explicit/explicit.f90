@@ -1,10 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Central difference in leap-frog form: v lives at half steps.
-!> One parallel region spans the whole run. Each cycle has three parts with a barrier behind
-!> each: elements, tile by tile, whose interior nodes move at once; special nodes; and the
-!> end of the cycle with contact and loads on the special nodes for the next (one thread). A
-!> cycle that writes keeps the forces and moves the nodes after writing, so that what is
-!> written belongs to one instant.
+!> Central differences in leap-frog form: v lives at half steps. One parallel region spans the whole
+!> run. A cycle has three parts with a barrier after each: elements, tile by tile, whose interior
+!> nodes move at once; special nodes; the end of the cycle with contact and loads on the special
+!> nodes for the next cycle (one thread). A cycle that writes stores the forces and moves the nodes
+!> after writing, so that the output belongs to one instant.
 module explicit_m
   use clock_m, only : lap, phase_elements, phase_nodes, phase_output
   use explicit_contact_m, only : report_contact_energies, add_implicit_penalties
@@ -12,12 +11,12 @@ module explicit_m
   use element_dispatch_m, only : add_tile_forces, scatter_tile_forces, store_tile_forces, &
     sum_special_forces
   use eroding_tiles_m, only : add_eroding_tile_forces
-  use element_losses_m, only : report_erosion, report_failures
+  use element_erosion_m, only : report_erosion, report_failures
   use errors_m, only : error_t
   use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, exchange_tiles, &
     end_cycle
   use explicit_report_m, only : report_cycle
-  use health_m, only : check_tile, warn_of_energies, unaccounted
+  use health_m, only : check_tile, warn_of_energies, energy_unaccounted
   use kinds_m, only : wp
   use mass_scaling_m, only : refine_limits
   use model_m, only : model_t
@@ -28,7 +27,7 @@ module explicit_m
   use ranks_m, only : share_error
   use quiescent_tiles_m, only : tile_active, tile_translating, save_tile, test_tile, &
     check_translation, report_tile_states
-  use held_nodes_m, only : hold_skew_nodes, hold_nodes
+  use node_constraints_m, only : apply_skew_supports, apply_walls
   use state_m, only : state_t
   implicit none
   private
@@ -36,14 +35,14 @@ module explicit_m
 
 contains
 
-  !> From the state at time zero to the end of the run.
+  !> Advance from the initial state to the end of the run.
   subroutine advance_explicit(model, n_thread, state, monitor, reason, error)
     type(model_t), intent(in) :: model
     integer, intent(in) :: n_thread
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
-    character(:), allocatable, intent(out) :: reason  !! what ended the run
-    type(error_t), allocatable, intent(out) :: error  !! what went wrong, if anything
+    character(:), allocatable, intent(out) :: reason  !! reason of the end
+    type(error_t), allocatable, intent(out) :: error  !! fault that ended the run, if any
     type(explicit_cycle_t) :: cycle
 
     call start_cycles(model, state, monitor, cycle)
@@ -54,7 +53,7 @@ contains
       return
     end if
     if (n_thread == 1) then
-      ! Outside of a parallel region: in a team of one every barrier still is a system call.
+      ! No parallel region: in a team of one every barrier is still a system call.
       call run_cycles(model, state, monitor, cycle)
     else
       !$omp parallel num_threads(n_thread) default(none) shared(model, state, monitor, cycle)
@@ -70,12 +69,12 @@ contains
     if (monitor%ranks%n > 1) call report_exchange(cycle%halo, monitor%ranks, monitor%log)
     call report_tile_states(monitor%ranks, cycle%tile_states, monitor%log)
     if (allocated(error)) return
-    call warn_of_energies(monitor%snapshot%energies, 0.0_wp, unaccounted, monitor%log)
+    call warn_of_energies(monitor%snapshot%energies, 0.0_wp, energy_unaccounted, monitor%log)
   end subroutine advance_explicit
 
-  !> The cycles, run by every thread of the team. The end of a cycle and the beginning of the next
-  !> are one piece of serial work; `cycle` may then already speak of the next one, so that what
-  !> others still ask it is kept.
+  !> Run the cycles, in every thread of the team. The end of a cycle and the beginning of the next
+  !> are one serial section, after which `cycle` belongs to the next cycle; values that other
+  !> threads still need are copied before.
   subroutine run_cycles(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -99,7 +98,7 @@ contains
       if (monitor%ranks%n > 1) then
         !$omp barrier
       end if
-      if (cycle%presses) call press_nodes(model, state, monitor, cycle)
+      if (cycle%has_pressures) call solve_pressures(model, state, monitor, cycle)
       call advance_special_nodes(model, state, cycle)
       if (writes) then
         !$omp master
@@ -119,17 +118,17 @@ contains
     end do
   end subroutine run_cycles
 
-  !> Element forces; interior nodes move at once unless this cycle writes. Behind the tiles to step
-  !> come those that rest: the team shares each kind evenly.
+  !> Element forces; interior nodes move at once unless this cycle writes. Quiescent tiles come
+  !> before the others, so that the team shares each kind evenly.
   subroutine advance_tiles(model, state, cycle, force)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(inout) :: cycle
-    real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_local) this thread's own
+    real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_local) private to this thread
     integer :: i, i_tile
 
     if (allocated(cycle%sums%parts)) then
-      ! Nothing moves the nodes of blocks while tiles advance: the team does not wait.
+      ! Nodes of blocks do not move here, so no barrier is needed.
       !$omp do schedule(static)
       do i = cycle%sums%first, size(cycle%sums%blocks, 2)
         if (i > cycle%sums%last .and. i <= cycle%sums%n_special) cycle
@@ -164,14 +163,15 @@ contains
     !$omp end do
   end subroutine advance_tiles
 
-  !> Step the elements of one tile.
+  !> Advance the elements of one tile.
   subroutine step_tile(model, i_tile, state, cycle, force)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_tile
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(inout) :: cycle
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_local)
-    real(wp), allocatable :: before(:) !! values of its elements, where the tile may come to rest
+    real(wp), allocatable :: before(:) !! element values before the step, where the tile may become
+                                       !! quiescent
 
     associate (tile => model%layout%tiles(i_tile))
       if (cycle%tile_states%status(i_tile) > tile_active) &
@@ -200,8 +200,8 @@ contains
     end associate
   end subroutine step_tile
 
-  !> Contact forces that follow all others, which are summed before.
-  subroutine press_nodes(model, state, monitor, cycle)
+  !> Forces of implicit penalties, after all other forces.
+  subroutine solve_pressures(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -217,16 +217,17 @@ contains
     end do
     !$omp end do
     !$omp master
-    ! The step of cycle zero is found later on.
+    ! The step of cycle zero is not known yet.
     if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call add_implicit_penalties(model, &
-      cycle%leap, cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
+      cycle%leap, cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, &
+      cycle%pressure_steps)
     !$omp end master
     !$omp barrier
-  end subroutine press_nodes
+  end subroutine solve_pressures
 
-  !> Sum the forces of special nodes, unless contact has asked for them; these move at once unless
-  !> this cycle writes. Each thread has the nodes of its own tiles, run by run: what it reads here
-  !> it has mostly written itself.
+  !> Sum the forces of special nodes, unless the implicit penalties did, and move them unless this
+  !> cycle writes. Each thread has the nodes of its own tiles, whose forces it has mostly written
+  !> itself.
   subroutine advance_special_nodes(model, state, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -237,12 +238,12 @@ contains
     do i = 1, size(cycle%tile_states%summed)
       associate (first => cycle%partition%runs(1, cycle%tile_states%summed(i)), &
         last => cycle%partition%runs(2, cycle%tile_states%summed(i)))
-        if (.not. cycle%presses) call sum_special_forces(model%layout, state%force_slots, first, &
-          last, state%internal_force)
+        if (.not. cycle%has_pressures) call sum_special_forces(model%layout, state%force_slots, &
+          first, last, state%internal_force)
         if (.not. cycle%writes) then
-          if (allocated(state%walls)) call hold_nodes(model, cycle%leap, first, last, state)
-          if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, cycle%leap, &
-            first, last, state)
+          if (allocated(state%walls)) call apply_walls(model, cycle%leap, first, last, state)
+          if (allocated(model%conditions%skew_supports)) call apply_skew_supports(model, &
+            cycle%leap, first, last, state)
           call move_run(model, cycle%leap, first, last, state)
         end if
       end associate
@@ -250,7 +251,7 @@ contains
     !$omp end do
   end subroutine advance_special_nodes
 
-  !> Move the special nodes first .. last, whose internal forces stand in the nodal array.
+  !> Move the special nodes first .. last; their internal forces are in the nodal array.
   subroutine move_run(model, leap, first, last, state)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap

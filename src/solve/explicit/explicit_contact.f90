@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Contact in the explicit cycle: the energy balance of the springs of each interface by the
-!> trapezoidal rule, which is the work that the explicit scheme itself does, with the warnings where
-!> they make or lose energy or where their forces are limited (doc/theory/contact.md, section 6);
-!> and implicit penalties (PUNIT 4, section 6.6), which follow all other forces: from the velocities
-!> that these give to the nodes of the interface, rigid bodies among them.
+!> Contact in the explicit cycle: energy balance of the springs of each interface by the trapezoidal
+!> rule, which is the work of the explicit scheme itself, with warnings where springs create or lose
+!> energy or where their forces are limited (doc/theory/contact.md, section 6); implicit penalties
+!> (PUNIT 4, section 6.6), which follow all other forces and use the velocities that these give to
+!> the nodes of the interface, rigid bodies included.
 module explicit_contact_m
   use clock_m, only : clock_t, lap, lap_interface, phase_contact_force, phase_nodes
   use loads_m, only : is_active, part_damping_rate
@@ -13,33 +13,32 @@ module explicit_contact_m
   use law_state_m, only : has_made, has_lost, energy_limit_t
   use log_m, only : log_t, warn, write_log, to_text, percent
   use model_m, only : model_t
-  use node_motion_m, only : leap_t, look_ahead, solve_rigids, damping_of
-  use rigid_state_m, only : turn_of, shift_by_turn, velocity_of
+  use node_motion_m, only : leap_t, predict_velocity, solve_rigids, damping_of
+  use rigid_state_m, only : rotation_terms, rotation_shift, velocity_of
   use state_m, only : state_t
   use units_m, only : per_depth
   implicit none
   private
   public :: plan_sampling, check_springs, report_contact_energies, add_implicit_penalties
 
-  !> Cycles between two samples of the springs; with shorter intervals the sum over all points would
-  !> show in the time of a step.
+  !> Cycles between two samples of the springs; shorter intervals would cost time in every step.
   integer, parameter :: sampling_interval = 20
-  !> Share of the largest energy so far from which on energy made, lost or withheld is reported.
+  !> Share of the largest energy above which created, lost or withheld energy is reported.
   real(wp), parameter :: noticed_share = 0.01_wp
-  !> Share of the largest energy so far that is admissible for springs loaded at their entry, of all
-  !> interfaces together.
+  !> Share of the largest energy that is admissible for springs that are loaded at activation, of
+  !> all interfaces together.
   real(wp), parameter :: entry_share = 0.005_wp
   character(*), parameter :: hint &
-    = '; look at corners there, at the penalty and at the time step', not_lost &
-    = ' (damping and friction are no part of it)'
+    = '; check corners there, the penalty and the time step', not_lost &
+    = ' (damping and friction not included)'
 
 contains
 
-  !> Before the contacts of a cycle: whether they sample their springs, the largest energy so far,
-  !> the entry allowance, and the step to come.
+  !> Prepare the contacts of a cycle: sampling of the springs, largest energy, admissible energy at
+  !> activation, and the coming step.
   pure subroutine plan_sampling(model, writes, state)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: writes !! this cycle writes something
+    logical, intent(in) :: writes !! this cycle writes
     type(state_t), intent(inout) :: state
 
     if (size(state%contacts) == 0) return
@@ -55,9 +54,8 @@ contains
     state%contacts%limit%coming_step = merge(state%dt, 0.0_wp, state%cycle > 0)
   end subroutine plan_sampling
 
-  !> After the forces of an interface: the balance of its springs where they were sampled, and a
-  !> warning the first time that they have made or lost much, or that limited forces have withheld
-  !> as much.
+  !> Update the balance of the springs of an interface if sampled, and warn the first time that they
+  !> created or lost much energy, or that limited forces withheld as much.
   subroutine check_springs(model, i, state, log)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
@@ -76,7 +74,7 @@ contains
         call warn(log, instant()//limit_text(limit, state%largest_energy)//hint)
       end if
       sign_of = merge(has_made, has_lost, monitor%balance < 0.0_wp)
-      ! In the first cycles the springs hold energy whose work is not in the balance yet.
+      ! In the first cycles the work of the stored energy is not in the balance yet.
       if (monitor%changes(sign_of)%warned .or. abs(monitor%balance) <= &
         noticed_share*max(state%largest_energy, contact%energy)) return
       ! While an interference ramps up there is no energy yet to compare with.
@@ -84,14 +82,14 @@ contains
       ! Impacts of implicit springs are plastic; the end reports their loss.
       if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) return
       monitor%changes(sign_of)%warned = .true.
-      call warn(log, instant()//'the contact springs have ' &
+      call warn(log, instant()//'the contact springs ' &
         //amount_text(model, i, sign_of, state)//hint//trim(merge(not_lost, repeat(' ', &
         len(not_lost)), sign_of == has_lost)))
     end associate
 
   contains
 
-    !> The interface and the present cycle.
+    !> Interface, cycle and time in words.
     function instant() result(text)
       character(:), allocatable :: text
 
@@ -101,8 +99,8 @@ contains
 
   end subroutine check_springs
 
-  !> The balance of sampled springs: energy of the interface minus what they store. The largest
-  !> change of either sign is kept with its place.
+  !> Update the balance of sampled springs: energy of the interface minus stored energy. The largest
+  !> change of either sign is recorded with its node.
   pure subroutine update_balance(model, i, state)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
@@ -110,13 +108,13 @@ contains
     real(wp) :: change, given
 
     associate (contact => state%contacts(i), monitor => state%contacts(i)%monitor)
-      ! What springs hold beyond what they were given is not returned (energy_limit).
+      ! Stored energy beyond the received and admissible energy is not returned (energy_limit).
       given = max(0.0_wp, contact%energy + contact%limit%admissible)
       contact%limit%withheld = max(contact%limit%withheld, monitor%stored - given)
       monitor%stored = min(monitor%stored, given)
       change = contact%energy - monitor%stored - monitor%balance
       monitor%balance = contact%energy - monitor%stored
-      ! What is loaded at time zero is what it stores.
+      ! Springs loaded at time zero start with their stored energy.
       if (state%cycle == 0) return
       associate (largest => monitor%changes(merge(has_made, has_lost, change < 0.0_wp)))
         if (abs(change) <= largest%amount) return
@@ -129,21 +127,21 @@ contains
     end associate
   end subroutine update_balance
 
-  !> How often forces were limited, and by how much.
+  !> Number of limited cycles, smallest factor and largest withheld energy in words.
   function limit_text(limit, largest) result(text)
     type(energy_limit_t), intent(in) :: limit
     real(wp), intent(in) :: largest !! energy so far, J/m
     character(:), allocatable :: text
 
-    text = 'contact forces limited, so that they return no more energy than they took, in ' &
+    text = 'contact forces limited to the admissible energy in ' &
       //to_text(limit%n_limited)//' of '//to_text(limit%n_loaded) &
       //' cycles with force, the smallest factor '//to_text(limit%least_factor)//' at time ' &
       //to_text(limit%least_time)//'; at most '//to_text(limit%withheld)//', ' &
       //percent(limit%withheld, largest)//' of the largest energy so far, was withheld'
   end function limit_text
 
-  !> At the end of a run: each interface whose forces were limited, and each whose springs have made
-  !> or lost much, or had.
+  !> Report at the end of a run the interfaces whose forces were limited and those whose springs
+  !> created or lost much energy.
   subroutine report_contact_energies(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -159,23 +157,23 @@ contains
         sign_of = merge(has_made, has_lost, monitor%balance < 0.0_wp)
         if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) then
           ! Impact is plastic within the first row of elements.
-          if (monitor%balance > 0.0_wp) call write_log(log, name//': impacts have taken ' &
+          if (monitor%balance > 0.0_wp) call write_log(log, name//': impacts dissipated ' &
             //to_text(monitor%balance)//per_depth(model%controls%units, 'F L', &
             model%is_axisymmetric)//', '//percent(monitor%balance, state%largest_energy) &
             //' of the largest energy so far; finer meshes lose less')
         else if (abs(monitor%balance) > noticed_share*state%largest_energy .and. state%cycle &
           > 0) then
-          call warn(log, name//': in the whole run the contact springs have ' &
+          call warn(log, name//': in the whole run the contact springs ' &
             //amount_text(model, i, sign_of, state))
         else if (any(monitor%changes%warned)) then
-          call write_log(log, name//': at the end the contact springs have ' &
+          call write_log(log, name//': at the end the contact springs ' &
             //amount_text(model, i, sign_of, state))
         end if
       end associate
     end do
   end subroutine report_contact_energies
 
-  !> How much, of what, and where most of it.
+  !> Created or lost energy in words, with the place of the largest change.
   function amount_text(model, i, sign_of, state) result(text)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i, sign_of
@@ -184,19 +182,19 @@ contains
 
     associate (monitor => state%contacts(i)%monitor, &
       largest => state%contacts(i)%monitor%changes(sign_of))
-      text = trim(merge('made', 'lost', sign_of == has_made))//' energy: ' &
+      text = trim(merge('created', 'lost   ', sign_of == has_made))//' energy: ' &
         //to_text(abs(monitor%balance))//', '//percent(abs(monitor%balance), state%largest_energy) &
         //' of the largest energy so far '//to_text(state%largest_energy) &
         //' (initial energy and external work)'
       if (largest%node == 0) return
-      text = text//'; the largest step of it, '//to_text(largest%amount)//', near node ' &
+      text = text//'; the largest change, '//to_text(largest%amount)//', near node ' &
         //to_text(model%mesh%node_id(largest%node))//' at ('//to_text(largest%position(1))//', ' &
         //to_text(largest%position(2))//') up to time '//to_text(largest%time)
     end associate
   end function amount_text
 
-  !> Pressures and forces of all interfaces with implicit penalties, one after the other: each adds
-  !> to the forces that the next one starts from.
+  !> Solve for the forces of all interfaces with implicit penalties, one after the other: each adds
+  !> to the forces of the next.
   subroutine add_implicit_penalties(model, leap, damping, velocity, clock, log, state, steps)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
@@ -205,8 +203,8 @@ contains
     type(clock_t), intent(inout) :: clock
     type(log_t), intent(inout) :: log
     type(state_t), intent(inout) :: state
-    type(pressure_step_t), intent(inout) :: steps(:) !! (interfaces) of the call before
-    logical :: are_solved !! rigid bodies: no two interfaces load one that moves
+    type(pressure_step_t), intent(inout) :: steps(:) !! (interfaces) of the previous call
+    logical :: are_solved !! rigid bodies are solved: no two interfaces load one that moves
     integer :: i
 
     are_solved = .false.
@@ -241,8 +239,8 @@ contains
     end do
   end subroutine add_implicit_penalties
 
-  !> Mobilities of the nodes that have rows, and their velocities in the step ahead without the
-  !> interface, 0 where nothing moves them; prescribed ones.
+  !> Set the mobilities of the nodes with rows and their velocities v(n+1/2) without the interface,
+  !> 0 where fixed; prescribed velocities.
   subroutine set_free_velocities(model, leap, velocity, state, nodes, step)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
@@ -255,7 +253,7 @@ contains
 
     do k = 1, size(nodes)
       if (step%rows%last(k) == 0) cycle
-      call look_ahead(leap, state, nodes(k), step%mobility(:, k), free)
+      call predict_velocity(leap, state, nodes(k), step%mobility(:, k), free)
       step%velocity(:, k) = merge(free, 0.0_wp, step%mobility(:, k) > 0.0_wp)
     end do
     do k = 1, size(step%prescribed, 2)
@@ -266,12 +264,12 @@ contains
     end do
   end subroutine set_free_velocities
 
-  !> Prescribed nodes of an interface, and its nodes of rigid bodies.
+  !> List the prescribed nodes of an interface and its nodes of rigid bodies.
   subroutine list_constrained_nodes(model, nodes, step)
     type(model_t), intent(in) :: model
     integer, intent(in) :: nodes(:)
     type(pressure_step_t), intent(inout) :: step
-    integer :: local(model%mesh%n_node) !! number in the interface, 0: not of it
+    integer :: local(model%mesh%n_node) !! number in the interface, 0: none
     integer :: prescribed(size(model%conditions%motions)), rigid_nodes(3, size(nodes)), i, k, n
 
     local = 0
@@ -293,8 +291,8 @@ contains
     allocate (step%modes(2, size(nodes), 3*k))
   end subroutine list_constrained_nodes
 
-  !> Velocities v(n+1/2) without the interface of its nodes of rigid bodies, and the modes by which
-  !> these are free to move, times the root of what a unit force along them makes.
+  !> Velocities v(n+1/2) of the interface's rigid-body nodes without the interface, and the free
+  !> modes of the bodies, scaled by the root of the response to a unit force.
   subroutine move_rigid_nodes(model, leap, damping, state, step)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
@@ -325,7 +323,8 @@ contains
       associate (rigid => state%rigids(body), node => step%rigid_nodes(3, i))
         speed = rigid%next_velocity
         arm = rigid%arms(:, step%rigid_nodes(2, i))
-        arm = arm + shift_by_turn(turn_of(rigid%place(3) + 0.5_wp*step%dt*speed(3)), arm)
+        arm = arm + rotation_shift(rotation_terms(rigid%displacement(3) + &
+          0.5_wp*step%dt*speed(3)), arm)
         speed(3) = 2.0_wp*sin(0.5_wp*step%dt*speed(3))/step%dt
         step%velocity(:, node) = velocity_of(speed, arm)
         do k = 1, 3

@@ -1,22 +1,22 @@
 ! SPDX-License-Identifier: MIT
-!> What one thread does in each explicit cycle: contact and loads before the elements; time, step
-!> and health after them.
+!> Serial part of the explicit cycle: contact and loads before the elements; time, step and checks
+!> after them.
 module explicit_cycle_m
   use archive_m, only : archive_t
   use element_dispatch_m, only : sum_special_forces
-  use load_work_m, only : find_prescribed_velocities, impose_prescribed, count_motions, &
-    count_body_motions, count_boundary_loads, count_groups, apply_loads, motion_sums_t, plan_sums, &
-    count_sums
+  use load_work_m, only : find_prescribed_velocities, impose_prescribed, add_motion_work, &
+    add_body_motion_work, add_load_work, add_group_work, apply_loads, motion_sums_t, plan_sums, &
+    add_work_of_sums
   use clock_m, only : lap, lap_interface, phase_nodes
-  use common_motion_m, only : common_velocity
+  use coupled_nodes_m, only : coupled_velocity
   use loads_m, only : fix_nodes, update_activity, is_active
   use explicit_contact_m, only : plan_sampling, check_springs
-  use start_m, only : check_added_mass, weigh_contacts
+  use start_m, only : check_added_mass, set_contact_masses
   use contacts_m, only : penalty_implicit
-  use element_losses_m, only : settle_elements, release_nodes, failure_log_t, follow_failures, &
-    follow_outlines
+  use element_erosion_m, only : finish_erosion, release_free_nodes, failure_log_t, &
+    update_failures, update_outlines
   use errors_m, only : error_t
-  use health_m, only : tile_check_t, check_elements, are_sound, check_step, name_collapsed, &
+  use health_m, only : tile_check_t, check_elements, are_sound, check_step, report_collapsed, &
     check_cycle
   use history_tables_m, only : table_secforc
   use implicit_penalty_m, only : pressure_step_t
@@ -26,9 +26,9 @@ module explicit_cycle_m
   use mass_scaling_m, only : needs_refinement, grow_masses
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due
-  use node_motion_m, only : follow_damping, leap_t, make_leap, solve_rigids, move_rigids
+  use node_motion_m, only : update_damping, leap_t, make_leap, solve_rigids, move_rigids
   use packed_buffer_m, only : stream_starts
-  use progress_m, only : follow_progress
+  use progress_m, only : update_progress
   use rank_exchange_m, only : halo_t, plan_halo, exchange_halo, exchange_checks, &
     n_notice, notice_eroded, notice_failed, notice_error, notice_dump, notice_plot, notice_stop, &
     notice_signal, gather_integers, gather_motion, gather_state, collect_requests, cut_sections
@@ -39,51 +39,52 @@ module explicit_cycle_m
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use quiescent_tiles_m, only : tile_states_t, plan_tile_states, update_tile_states
-  use held_nodes_m, only : move_common, count_walls
+  use node_constraints_m, only : move_coupled_nodes, add_wall_work
   use state_m, only : state_t
-  use time_step_m, only : step_plan_t, volume_step, next_step, obey_approach, &
-    is_last, follow_springs, cycles_in, has_springs
+  use time_step_m, only : step_plan_t, volume_step, next_step, limit_approach, &
+    is_last, update_spring_bounds, cycles_in, has_springs
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: explicit_cycle_t, start_cycles, begin_cycle, prepare_leap, exchange_tiles, &
     end_cycle, read_cycle
 
-  !> Shared by the team, written by one thread between barriers.
+  !> Data of the cycle, shared by the team and written by one thread between barriers.
   type, extends(visited_t) :: explicit_cycle_t
-    logical :: writes = .true.       !! this cycle writes something
+    logical :: writes = .true.       !! this cycle writes output
     logical :: finished = .false.    !! the run is over
     logical :: last = .false.        !! this cycle is the last one
-    logical :: plots = .false.       !! this cycle writes a plot state because someone asked for it
+    logical :: plots = .false.       !! this cycle writes a plot state on request
     type(due_t) :: due
     type(partition_t) :: partition   !! tiles of each process, and nodes between them
-    type(halo_t) :: halo             !! what they exchange in each cycle
-    type(requests_t) :: asked        !! what someone asks for, heard in this cycle
-    type(recent_requests_t) :: recent !! what was asked for before, of several processes
+    type(halo_t) :: halo             !! exchange between processes in each cycle
+    type(requests_t) :: asked        !! requests of the user, received in this cycle
+    type(recent_requests_t) :: recent !! requests served before, of several processes
     type(leap_t) :: leap             !! motion factors of this cycle
     type(step_plan_t) :: steps
     logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
-    logical, allocatable :: active(:)  !! (n_motion) which of them hold, once that has been asked
-    logical :: presses = .false.     !! contact forces of some interface follow all other forces
-    type(pressure_step_t), allocatable :: pressing(:) !! (interfaces) where these are found
-    logical :: refines = .false.     !! steps of elements are not those of their density alone
+    logical, allocatable :: active(:)  !! (n_motion) motions that are active, once known
+    logical :: has_pressures = .false. !! some interface has implicit penalties
+    type(pressure_step_t), allocatable :: pressure_steps(:) !! (interfaces) of these penalties
+    logical :: refines = .false.     !! stable steps need more than the density (scaled, damped,
+                                     !! exposed)
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
-    type(tile_states_t) :: tile_states      !! tiles that need no step
-    type(tile_check_t), allocatable :: checks(:) !! (tiles) what their elements have come to
-    integer :: first_check = 1       !! from there on they speak for all: of several processes one
-                                     !! more, behind those of the tiles, that they have exchanged
-    type(failure_log_t) :: failures   !! points that have failed, as far as the log tells of them
-    real(wp) :: damping(2) = 0.0_wp  !! D per direction
+    type(tile_states_t) :: tile_states      !! activity of the tiles
+    type(tile_check_t), allocatable :: checks(:) !! (tiles) results of their elements
+    integer :: first_check = 1       !! first check that counts: with several processes the last
+                                     !! one, which holds the reduced results of all
+    type(failure_log_t) :: failures   !! failed points that have been reported
+    real(wp) :: damping(2) = 0.0_wp  !! D per direction, 1/s
     real(wp), allocatable :: rates(:, :) !! (2, n_part + 1) D of parts, where the deck damps some
-    real(wp) :: ratio = 1.0_wp       !! last energy ratio known
-    integer, allocatable :: n_eroded_seen(:) !! (n_part) eroded elements that interfaces have heard
-                                     !! of; only where elements may leave the mesh
-    integer, allocatable :: freed(:) !! nodes whose last element has left the mesh in this cycle;
-                                     !! there where any element has
+    real(wp) :: ratio = 1.0_wp       !! last known energy ratio
+    integer, allocatable :: n_eroded_seen(:) !! (n_part) eroded elements that the interfaces account
+                                             !! for; allocated where elements may erode
+    integer, allocatable :: freed(:) !! nodes without an element since this cycle; allocated with
+                                     !! erosion in this cycle
     real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
     real(wp), allocatable :: displacement(:) !! (n_motion) u(n) of prescribed motions
-    real(wp), allocatable :: common(:, :)    !! (2, n_set) v(n-1/2) of nodes that move alike
-    character(:), allocatable :: reason      !! what ended the run
+    real(wp), allocatable :: common(:, :)    !! (2, n_set) v(n-1/2) of coupled nodes
+    character(:), allocatable :: reason      !! reason of the end
     type(error_t), allocatable :: error
   contains
     procedure :: visit => visit_cycle
@@ -104,8 +105,8 @@ contains
         motions%death < model%controls%end_time)
     end associate
     call plan_sums(model, cycle%sums)
-    cycle%presses = any(model%contacts%penalty_unit == penalty_implicit)
-    if (cycle%presses) allocate (cycle%pressing(size(model%contacts)))
+    cycle%has_pressures = any(model%contacts%penalty_unit == penalty_implicit)
+    if (cycle%has_pressures) allocate (cycle%pressure_steps(size(model%contacts)))
     cycle%refines = needs_refinement(state%elements)
     associate (ranks => monitor%ranks)
       cycle%partition = partition_tiles(model%layout, ranks%mine, ranks%n)
@@ -121,7 +122,7 @@ contains
     cycle%steps%start_time = state%time
     cycle%failures%is_restart = monitor%restarts%is_restart
     if (monitor%restarts%is_restart) call read_cycle(model, state, monitor%restarts%source, cycle)
-    ! The deck of this run says when it ends.
+    ! The end comes from the deck of this run.
     cycle%steps%end_time = model%controls%end_time
     cycle%steps%end_cycle = model%controls%end_cycle
     if (.not. monitor%restarts%is_restart) return
@@ -131,7 +132,7 @@ contains
     call find_early_end(model, state, cycle%last, cycle%reason)
   end subroutine start_cycles
 
-  !> What a restart file says of it; the first thing that is wrong is an error of the archive.
+  !> Read the driver data of a restart file; the first fault becomes the error of the archive.
   subroutine read_cycle(model, state, source, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -144,7 +145,7 @@ contains
       'a cycle after the present one')
   end subroutine read_cycle
 
-  !> Forces on the special nodes at u(n), and what this cycle has to write.
+  !> Forces on the special nodes at u(n), and the outputs of this cycle.
   subroutine begin_cycle(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -159,9 +160,9 @@ contains
     cycle%plots = .false.
     cycle%writes = cycle%due%plot .or. any(cycle%due%tables) .or. state%cycle == 0 .or. cycle%last
     call apply_loads(model, state, cycle%damping, cycle%sums)
-    if (allocated(state%boundary_work)) call count_boundary_loads(model, state)
-    if (allocated(state%node_damping)) call follow_damping(model, cycle%rates, state)
-    ! What ended the cycle before is in this lap, or without contact in the one below.
+    if (allocated(state%boundary_work)) call add_load_work(model, state)
+    if (allocated(state%node_damping)) call update_damping(model, cycle%rates, state)
+    ! This lap, or without contact the one below, includes the end of the previous cycle.
     if (size(model%contacts) > 0) call lap(monitor%clock, phase_nodes)
     call plan_sampling(model, cycle%writes, state)
     do i = 1, size(model%contacts)
@@ -176,7 +177,7 @@ contains
     call lap(monitor%clock, phase_nodes)
   end subroutine begin_cycle
 
-  !> Motion factors and prescribed velocities once the step is known.
+  !> Set the motion factors and prescribed velocities once the step is known.
   subroutine prepare_leap(model, state, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -193,7 +194,7 @@ contains
         cycle%active = active
         call update_activity(model, state%time, state%mass, state%inverse_mass)
         call fix_nodes(model, state%inverse_mass)
-        call weigh_contacts(model, state)
+        call set_contact_masses(model, state)
       end if
     end if
     do i = 1, size(cycle%displacement)
@@ -204,12 +205,12 @@ contains
     call find_prescribed_velocities(model, state, cycle%velocity)
     if (allocated(model%conditions%common_motions)) then
       associate (n => size(model%conditions%common_motions))
-        cycle%common = reshape([(common_velocity(model, i, state), i=1, n)], [2, n])
+        cycle%common = reshape([(coupled_velocity(model, i, state), i=1, n)], [2, n])
       end associate
     end if
   end subroutine prepare_leap
 
-  !> What processes have to know of each other's tiles before special nodes move.
+  !> Exchange forces and notices between processes before special nodes move.
   subroutine exchange_tiles(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -230,7 +231,7 @@ contains
       if (notices(notice_error)) call share_error(ranks, cycle%error)
       if (notices(notice_eroded)) then
         associate (erosion => elements%erosion, slots => (partition%chunks - 1)*chunk_size + 1)
-          call gather_integers(ranks, partition%chunks, erosion%n_gone)
+          call gather_integers(ranks, partition%chunks, erosion%n_removed)
           call gather_integers(ranks, slots, erosion%status)
           call gather_reals(ranks, slots, 1, .true., erosion%hourglass)
           call gather_reals(ranks, slots, 1, .true., erosion%internal)
@@ -252,7 +253,7 @@ contains
     call lap(monitor%clock, phase_nodes)
   end subroutine exchange_tiles
 
-  !> Prescribed nodes to their places, health, and on to the next instant.
+  !> Move prescribed nodes and bodies, check the state, and advance to the next instant.
   subroutine end_cycle(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -260,13 +261,13 @@ contains
     type(explicit_cycle_t), intent(inout) :: cycle
     real(wp) :: limit
 
-    if (allocated(state%elements%n_failed)) call follow_failures(model, state, cycle%failures, &
+    if (allocated(state%elements%n_failed)) call update_failures(model, state, cycle%failures, &
       monitor%log)
     call update_tile_states(model, cycle%partition, cycle%tile_states)
     if (cycle%finished) return
     if (.not. cycle%writes) then
-      call count_sums(cycle%sums, state%external_work, state%damping_work)
-      if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
+      call add_work_of_sums(cycle%sums, state%external_work, state%damping_work)
+      if (model%erodes) call finish_erosion(model, state, monitor%log, cycle%freed)
       if (.not. are_sound(cycle%checks(cycle%first_check:), state%contacts)) then
         if (monitor%ranks%n > 1) call gather_state(cycle%partition, .false., monitor%ranks, state)
         if (monitor%ranks%mine == 0) call check_elements(model, state, cycle%error)
@@ -274,24 +275,25 @@ contains
       end if
     end if
     if (size(cycle%velocity) > 0) then
-      call count_motions(model, cycle%velocity, cycle%damping, [.not. cycle%writes, .true.], state)
+      call add_motion_work(model, cycle%velocity, cycle%damping, [.not. cycle%writes, .true.], &
+        state)
       call impose_prescribed(model, cycle%velocity, cycle%displacement, state)
     end if
-    if (allocated(cycle%common)) call move_common(model, cycle%leap, cycle%damping, cycle%common, &
-      state)
-    if (allocated(state%walls)) call count_walls(model, [.not. cycle%writes, .true.], state)
+    if (allocated(cycle%common)) call move_coupled_nodes(model, cycle%leap, cycle%damping, &
+      cycle%common, state)
+    if (allocated(state%walls)) call add_wall_work(model, [.not. cycle%writes, .true.], state)
     if (size(state%rigids) > 0) then
       if (.not. cycle%writes) call solve_rigids(model, cycle%damping, state)
-      call count_body_motions(model, cycle%damping, [.not. cycle%writes, .true.], state)
+      call add_body_motion_work(model, cycle%damping, [.not. cycle%writes, .true.], state)
       call move_rigids(model, state)
     end if
-    if (allocated(state%group_work)) call count_groups(model, [.not. cycle%writes, .true.], state)
+    if (allocated(state%group_work)) call add_group_work(model, [.not. cycle%writes, .true.], state)
     if (allocated(cycle%freed)) then
       if (monitor%ranks%n > 1) call gather_motion(cycle%partition, .true., monitor%ranks, state)
-      ! Nodes that no element holds any more, and surfaces of interfaces.
-      call release_nodes(model, cycle%leap, cycle%freed, state)
+      ! Nodes without elements, and surfaces of interfaces.
+      call release_free_nodes(model, cycle%leap, cycle%freed, state)
       associate (n_eroded => state%elements%erosion%n_eroded)
-        call follow_outlines(model, n_eroded > cycle%n_eroded_seen, state)
+        call update_outlines(model, n_eroded > cycle%n_eroded_seen, state)
         cycle%n_eroded_seen = n_eroded
       end associate
       cycle%refines = needs_refinement(state%elements)
@@ -300,50 +302,50 @@ contains
     state%cycle = state%cycle + 1
     state%previous_dt = state%dt_before
     state%dt_before = state%dt
-    if (allocated(state%elements%mass_ratio)) call follow_masses(model, monitor%ranks, state, cycle)
-    call follow_springs(model, state, cycle%steps%springs)
+    if (allocated(state%elements%mass_ratio)) call update_masses(model, monitor%ranks, state, cycle)
+    call update_spring_bounds(model, state, cycle%steps%springs)
     limit = element_limit(model, state, cycle)
-    if (size(state%contacts) > 0) call obey_approach(model, merge(state%previous_dt, &
+    if (size(state%contacts) > 0) call limit_approach(model, merge(state%previous_dt, &
       state%dt_before, state%cycle > 1), state, monitor%log, cycle%steps, limit)
     call next_step(model, limit, monitor%log, state%cycle, cycle%steps, state%time, state%dt)
     if (.not. allocated(cycle%error)) then
       call check_step(model%controls, cycle%steps%first_dt, state%time, state%dt, cycle%error)
       if (allocated(cycle%error) .and. monitor%ranks%n > 1) &
         call gather_state(cycle%partition, .false., monitor%ranks, state)
-      if (allocated(cycle%error) .and. monitor%ranks%mine == 0) call name_collapsed(model, state, &
-        cycle%error)
+      if (allocated(cycle%error) .and. monitor%ranks%mine == 0) call report_collapsed(model, &
+        state, cycle%error)
     end if
     if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
     cycle%finished = allocated(cycle%error)
     call find_early_end(model, state, cycle%last, cycle%reason)
     if (.not. cycle%finished) call apply_requests(state, monitor, cycle)
-    if (monitor%ranks%mine == 0) call follow_progress(monitor%progress, monitor%clock, &
+    if (monitor%ranks%mine == 0) call update_progress(monitor%progress, monitor%clock, &
       state%cycle, .false., state%time, state%dt, cycle%ratio)
   end subroutine end_cycle
 
-  !> Smallest step of the elements. Where all have left nothing limits it, and it stays as it is.
+  !> Smallest stable step of the elements, s. Where all elements have eroded the step stays.
   pure function element_limit(model, state, cycle) result(limit)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(explicit_cycle_t), intent(in) :: cycle
     real(wp) :: limit, dt
 
-    ! Changes are those of the step before the last, in the first cycle those of the first step.
+    ! Changes belong to the step before the last one, in the first cycle to the first step.
     dt = merge(state%previous_dt, state%dt_before, state%cycle > 1)
     associate (checks => cycle%checks(cycle%first_check:))
       limit = min(minval(checks%time_limit), volume_step(dt, merge(state%dt_before, 0.0_wp, &
         state%cycle > 1), maxval(checks%volume_change)))
     end associate
     if (.not. model%erodes) return
-    associate (n_gone => state%elements%erosion%n_gone)
-      if (sum(n_gone) == sum(model%layout%chunk_elements(:size(n_gone)))) &
+    associate (n_removed => state%elements%erosion%n_removed)
+      if (sum(n_removed) == sum(model%layout%chunk_elements(:size(n_removed)))) &
         limit = state%dt/model%controls%dt_scale
     end associate
   end function element_limit
 
-  !> Mass for elements that have become too small for DT2MS, where the deck lets it grow, with all
-  !> that is made of masses. What it brings in kinetic energy comes from outside.
-  subroutine follow_masses(model, ranks, state, cycle)
+  !> Add mass to elements whose stable step has fallen below DT2MS, where the deck allows, and
+  !> update all masses. Its kinetic energy is external work.
+  subroutine update_masses(model, ranks, state, cycle)
     type(model_t), intent(in) :: model
     type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state
@@ -357,7 +359,7 @@ contains
     if (ranks%n > 1) call gather_state(cycle%partition, .true., ranks, state)
     before = state%mass
     call grow_masses(model, state%motion, state%dt, state%elements, state%mass, work)
-    ! The places of the next cycle have been looked at.
+    ! The limits hold for the positions of the next cycle.
     cycle%checks%time_limit = max(cycle%checks%time_limit, abs(model%controls%mass_step))
     if (.not. any(state%mass > before)) return
     state%external_work = state%external_work + work
@@ -368,14 +370,13 @@ contains
     n = size(state%contact_mass)
     where (state%mass(:n) > before(:n)) &
       state%contact_mass = state%contact_mass + (state%mass(:n) - before(:n))
-    call weigh_contacts(model, state)
+    call set_contact_masses(model, state)
     if (allocated(cycle%rates)) deallocate (cycle%rates)
     if (.not. allocated(cycle%error)) call check_added_mass(model, state%elements, cycle%error)
-  end subroutine follow_masses
+  end subroutine update_masses
 
-  !> Stop, restart files, states and lines that are due or that someone asks for; for restart files
-  !> a stop by a signal counts as an end. The state is that before the next cycle; a run that goes
-  !> on from it repeats that cycle.
+  !> Serve requests and write due restart files. A stop by a signal counts as an end for restart
+  !> files. The state is that before the next cycle, which a restarted run repeats.
   subroutine apply_requests(state, monitor, cycle)
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -399,7 +400,7 @@ contains
     cycle%reason = 'stopped on request'
   end subroutine apply_requests
 
-  !> What a cycle hands to the next besides the state.
+  !> Visit the driver data that the next cycle needs besides the state.
   subroutine visit_cycle(self, visitor)
     class(explicit_cycle_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

@@ -1,65 +1,65 @@
 ! SPDX-License-Identifier: MIT
-!> A cycle of an explicit run that writes: what the elements have come to, and what is due from it;
-!> what its energies lack so that their sum is what leap-frog keeps: v(n-1/2).M v(n+1/2)/2 + U with
-!> equal steps (doc/theory/time_integration.md). One thread.
+!> A cycle of an explicit run that writes: checks, output, and the leap-frog term that completes the
+!> energy balance: v(n-1/2).M v(n+1/2)/2 + U is conserved with equal steps
+!> (doc/theory/time_integration.md). One thread.
 module explicit_report_m
-  use common_motion_m, only : common_drive, common_velocity
+  use coupled_nodes_m, only : coupled_acceleration, coupled_velocity
   use loads_m, only : is_active
   use contact_reports_m, only : report_contact_start
   use explicit_contact_m, only : add_implicit_penalties
   use curves_m, only : curve_value
-  use element_losses_m, only : settle_elements
+  use element_erosion_m, only : finish_erosion
   use element_steps_m, only : find_smallest_steps
   use explicit_cycle_m, only : explicit_cycle_t, prepare_leap
-  use health_m, only : check_elements, check_energy, check_ratio, check_radii, made_by_springs, &
-    unaccounted
-  use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls
+  use health_m, only : check_elements, check_energy, check_ratio, check_radii, created_by_springs, &
+    energy_unaccounted
+  use node_constraints_m, only : apply_skew_supports, apply_walls, add_wall_work
   use history_filling_m, only : fill_explicit_reactions
   use history_tables_m, only : table_glstat, table_matsum, table_rwforc, table_spcforc, table_rbdout
   use kinds_m, only : wp
   use layout_m, only : slot_part
-  use load_work_m, only : count_sums, count_motions, count_body_motions, count_groups
+  use load_work_m, only : add_work_of_sums, add_motion_work, add_body_motion_work, add_group_work
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, write_due, note_energies, write_instant
+  use monitor_m, only : monitor_t, write_due, record_energies, write_instant
   use ranks_m, only : share_error, broadcast_values
   use node_motion_m, only : solve_rigids, fill_rigids
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, find_motion, damping_at
   use snapshot_m, only : energy_ratio, snapshot_t
   use state_m, only : state_t
-  use time_step_m, only : first_change, first_step, largest_change, obey_approach, obey_defaults, &
-    follow_springs
+  use time_step_m, only : first_volume_change, first_step, largest_change, limit_approach, &
+    limit_default_penalties, update_spring_bounds
   use walls_m, only : wall_tangent
   implicit none
   private
   public :: report_cycle, complete_balance
 
-  !> Elements of the list of smallest steps.
+  !> Number of elements in the list of smallest steps.
   integer, parameter :: n_listed = 10
-  !> Part of DT2MS by which a step that mass scaling has set may differ from it.
+  !> Share of DT2MS by which a step set by mass scaling may differ from it.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
 contains
 
-  !> Write what is due, unless the state has gone wrong; the first cycle first finds its step.
+  !> Write due outputs unless the state is faulty; the first cycle determines the first step before.
   subroutine report_cycle(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
     real(wp), allocatable :: held(:, :)              !! (2, n_skew) forces of skew supports
-    integer, allocatable :: held_nodes(:)
+    integer, allocatable :: node_constraints(:)
     real(wp) :: energy(1)
     logical, parameter :: due(2) = [.true., .false.] !! works of the half step before the instant
 
-    call count_sums(cycle%sums, state%external_work, state%damping_work)
-    if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
+    call add_work_of_sums(cycle%sums, state%external_work, state%damping_work)
+    if (model%erodes) call finish_erosion(model, state, monitor%log, cycle%freed)
     ! The first process has gathered the state of all elements.
     if (monitor%ranks%mine == 0) call check_elements(model, state, cycle%error)
     call share_error(monitor%ranks, cycle%error)
     if (state%cycle == 0) then
-      call obey_defaults(model, state)
-      call follow_springs(model, state, cycle%steps%springs)
+      call limit_default_penalties(model, state)
+      call update_spring_bounds(model, state, cycle%steps%springs)
     end if
     if (state%cycle == 0 .and. .not. allocated(cycle%error)) &
       call first_step(model, state%elements, monitor%log, cycle%steps, state%dt, cycle%error)
@@ -68,34 +68,34 @@ contains
       return
     end if
     if (state%cycle == 0) then
-      call bound_first_change(model, state, monitor, cycle)
-      ! The step below which ERODE takes elements: DTMIN times the first step, before TSSFAC.
+      call limit_first_step(model, state, monitor, cycle)
+      ! ERODE erodes elements below DTMIN times the first step, before TSSFAC.
       if (model%erodes) state%elements%erosion%least_step = model%controls%dt_floor &
         *cycle%steps%first_dt/model%controls%dt_scale
       call prepare_leap(model, state, cycle)
-      if (cycle%presses .and. cycle%leap%dt > 0.0_wp) call add_implicit_penalties(model, &
+      if (cycle%has_pressures .and. cycle%leap%dt > 0.0_wp) call add_implicit_penalties(model, &
         cycle%leap, cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, &
-        cycle%pressing)
+        cycle%pressure_steps)
       call report_contact_start(model, state, monitor%log)
       if (monitor%ranks%mine == 0) call log_smallest_steps(model, state, monitor%log)
       call warn_of_damping(model, state%dt, monitor%log)
     end if
     if (size(state%rigids) > 0) then
       call solve_rigids(model, cycle%damping, state)
-      call count_body_motions(model, cycle%damping, due, state)
+      call add_body_motion_work(model, cycle%damping, due, state)
     end if
     if (allocated(state%walls)) then
-      call hold_nodes(model, cycle%leap, 1, model%layout%n_special, state)
-      call count_walls(model, due, state)
+      call apply_walls(model, cycle%leap, 1, model%layout%n_special, state)
+      call add_wall_work(model, due, state)
     end if
     if (allocated(model%conditions%skew_supports)) then
-      held_nodes = model%conditions%skew_supports%node
-      held = -state%force_special(:, held_nodes)
-      call hold_skew_nodes(model, cycle%leap, 1, model%layout%n_special, state)
-      held = held + state%force_special(:, held_nodes)
+      node_constraints = model%conditions%skew_supports%node
+      held = -state%force_special(:, node_constraints)
+      call apply_skew_supports(model, cycle%leap, 1, model%layout%n_special, state)
+      held = held + state%force_special(:, node_constraints)
     end if
-    call count_motions(model, cycle%velocity, cycle%damping, due, state)
-    if (allocated(state%group_work)) call count_groups(model, due, state)
+    call add_motion_work(model, cycle%velocity, cycle%damping, due, state)
+    if (allocated(state%group_work)) call add_group_work(model, due, state)
     if (monitor%ranks%mine == 0) then
       call write_report(model, held, state, monitor, cycle)
     else
@@ -109,9 +109,9 @@ contains
     cycle%finished = cycle%last .or. allocated(cycle%error)
   end subroutine report_cycle
 
-  !> A shorter first step where elements would change their volume by too much in it, or bodies come
-  !> too far into each other.
-  subroutine bound_first_change(model, state, monitor, cycle)
+  !> Shorten the first step where elements would change their volume by too much in it, or bodies
+  !> would approach too far.
+  subroutine limit_first_step(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -128,37 +128,37 @@ contains
           - minval(state%motion(3:4, memory%nodes), 2))
       end associate
     end do
-    call obey_approach(model, dt, state, monitor%log, cycle%steps, limit)
+    call limit_approach(model, dt, state, monitor%log, cycle%steps, limit)
     if (model%controls%dt_scale*limit < dt) then
       state%dt = model%controls%dt_scale*limit
       cycle%steps%constant = 0.0_wp
       call write_log(monitor%log, 'first time step shortened to '//to_text(state%dt) &
-        //': bodies would come deeper into each other in it than a first contact may be')
+        //': bodies would approach by more than the search radius of a first contact')
     end if
     call prepare_leap(model, state, cycle)
-    call first_change(model, cycle%partition, cycle%leap, cycle%velocity, state, monitor%ranks, &
-      change)
+    call first_volume_change(model, cycle%partition, cycle%leap, cycle%velocity, state, &
+      monitor%ranks, change)
     if (change > largest_change) then
       state%dt = state%dt*(largest_change/change)
       cycle%steps%constant = 0.0_wp
       call write_log(monitor%log, 'first time step shortened to '//to_text(state%dt) &
-        //': in the stable one the volume of an element would change by ' &
+        //': at the stable step the volume of an element would change by ' &
         //to_text(100.0_wp*change)//' %')
       change = largest_change
     end if
     state%contacts%advance = state%contacts%advance*(state%dt/dt)
-    ! What the elements of the first cycle could not yet tell the step of the second one.
+    ! The first cycle had no volume change of its elements yet.
     cycle%checks(cycle%first_check)%volume_change = change
-  end subroutine bound_first_change
+  end subroutine limit_first_step
 
-  !> Fill the snapshot with what is due, and write it.
+  !> Fill the snapshot with due outputs and write it.
   subroutine write_report(model, held, state, monitor, cycle)
     type(model_t), intent(in) :: model
-    real(wp), allocatable, intent(in) :: held(:, :) !! by skew supports, where there are any
+    real(wp), allocatable, intent(in) :: held(:, :) !! forces of skew supports, if any
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    logical :: follows !! springs beside the bodies, of which energies are known
+    logical :: follows !! energies of springs and bodies are known
     integer :: i
 
     call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
@@ -182,7 +182,7 @@ contains
     if (follows) call fill_energies(model, state, cycle%damping, monitor%snapshot)
     if (cycle%due%tables(table_glstat)) call complete_balance(model, state, cycle%damping, &
       cycle%velocity, monitor%snapshot)
-    call note_energies(model, follows, state, monitor)
+    call record_energies(model, follows, state, monitor)
     if (cycle%due%tables(table_matsum)) call fill_parts(model, state%elements, &
       monitor%snapshot)
     if (cycle%due%tables(table_glstat)) then
@@ -194,8 +194,8 @@ contains
     if (cycle%due%tables(table_rbdout) .and. allocated(monitor%snapshot%bodies)) then
       do i = 1, size(monitor%snapshot%bodies)
         associate (rigid => state%rigids(i), body => monitor%snapshot%bodies(i))
-          body%displacement = rigid%place
-          body%place = rigid%centre + rigid%place(1:2)
+          body%displacement = rigid%displacement
+          body%position = rigid%centre + rigid%displacement(1:2)
           body%velocity = rigid%velocity + 0.5_wp*state%dt_before*rigid%acceleration
           body%acceleration = rigid%acceleration
         end associate
@@ -203,15 +203,15 @@ contains
     end if
     call write_instant(model, cycle%due, state%dt, cycle%ratio, state, monitor, cycle%error)
     if (.not. allocated(cycle%error) .and. cycle%due%tables(table_glstat)) then
-      call check_energy(model%controls, monitor%snapshot%energies, made_by_springs, cycle%error)
+      call check_energy(model%controls, monitor%snapshot%energies, created_by_springs, cycle%error)
       if (.not. allocated(cycle%error)) call check_ratio(monitor%snapshot%energies, 0.0_wp, &
-        unaccounted, state%cycle, state%time, monitor%warned_ratio, monitor%log)
+        energy_unaccounted, state%cycle, state%time, monitor%warned_ratio, monitor%log)
     end if
     call check_radii(model, state, monitor%warned_radii, monitor%log)
   end subroutine write_report
 
-  !> Ids of the element with the smallest stable step, and of its part; 0 where the curve rules. And
-  !> whether that step is the one of DT2MS.
+  !> Ids of the element with the smallest stable step and of its part, 0 where the curve determines
+  !> the step; and whether that step is DT2MS.
   subroutine find_slowest(model, state, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -227,7 +227,7 @@ contains
     end if
     call find_smallest_steps(model, state%elements, state%motion, 1, found, steps)
     if (size(found) == 0) return
-    ! An element that is as large without added mass rules by itself.
+    ! An element of this step without added mass determines it itself.
     if (snapshot%energies%has_mass_scaling) snapshot%by_dt2ms = merge(1, 0, &
       abs(steps(1)/abs(model%controls%mass_step) - 1.0_wp) <= round_off .or. &
       (model%controls%mass_step > 0.0_wp .and. steps(1) > model%controls%mass_step))
@@ -235,34 +235,36 @@ contains
       model%parts(slot_part(model%layout, model%layout%element_slot(found(1))))%id]
   end subroutine find_slowest
 
-  !> Complete the energies of the snapshot, which must be filled: the leap-frog part of the kinetic
-  !> energy, from m a^2 of all degrees of freedom, and what the damping of this instant takes over
-  !> the half step behind.
+  !> Complete the energies of the snapshot: the leap-frog term of the kinetic energy -(dt^2/8) sum m
+  !> a^2 and the damping work over the half step before t(n).
   subroutine complete_balance(model, state, damping, velocity_next, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: damping(2)       !! D per direction
     real(wp), intent(in) :: velocity_next(:) !! (n_motion) v(n+1/2) of prescribed motions
     type(snapshot_t), intent(inout) :: snapshot
-    real(wp) :: dt, mean, inertia, led, work, velocity(2), acceleration(2)
+    real(wp) :: dt, mean, inertia, prescribed, rigid_bodies, work, velocity(2), &
+      acceleration(2)
     integer :: i
 
-    ! Time zero has no step behind: that of equal steps stands for it.
+    ! At time zero use the coming step for the previous one.
     dt = merge(state%dt_before, state%dt, state%dt_before > 0.0_wp)
     mean = 0.5_wp*(state%dt + state%dt_before)
-    led = 0.0_wp
-    if (state%dt > 0.0_wp) led = sum(state%mass(model%conditions%motions%node)*((velocity_next &
-      - state%prescribed_velocity)/mean)**2, is_active(model%conditions%motions, state%time))
-    inertia = free_inertia(model, state, damping) + led
-    led = 0.0_wp
+    prescribed = 0.0_wp
+    if (state%dt > 0.0_wp) prescribed = sum(state%mass(model%conditions%motions%node) &
+      *((velocity_next - state%prescribed_velocity)/mean)**2, is_active(model%conditions%motions, &
+      state%time))
+    inertia = free_inertia(model, state, damping) + prescribed
+    rigid_bodies = 0.0_wp
     do i = 1, size(state%rigids)
       associate (rigid => state%rigids(i))
-        led = led + sum(rigid%inertia*((rigid%next_velocity - rigid%velocity)/mean)**2)
+        rigid_bodies = rigid_bodies &
+          + sum(rigid%inertia*((rigid%next_velocity - rigid%velocity)/mean)**2)
       end associate
     end do
-    inertia = inertia + led
+    inertia = inertia + rigid_bodies
     if (allocated(model%conditions%common_motions)) &
-      inertia = inertia + common_inertia(model, state, damping)
+      inertia = inertia + coupled_inertia(model, state, damping)
     if (allocated(state%walls) .and. .not. state%dt_before > 0.0_wp) &
       inertia = inertia - wall_power(model, state, damping)
     snapshot%energies%leapfrog = -0.125_wp*dt**2*inertia
@@ -280,7 +282,7 @@ contains
     snapshot%energies%damping = snapshot%energies%damping + 0.5_wp*state%dt_before*work
   end subroutine complete_balance
 
-  !> Sum of m a^2 over degrees of freedom that move freely, with a = (v(n+1/2) - v(n-1/2))/h.
+  !> Sum of m a^2 over free degrees of freedom, with a = (v(n+1/2) - v(n-1/2))/h.
   pure function free_inertia(model, state, damping) result(total)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -303,8 +305,8 @@ contains
     end do
   end function free_inertia
 
-  !> The same over nodes that move alike.
-  pure function common_inertia(model, state, damping) result(total)
+  !> Sum of m a^2 over coupled nodes, with a = (v(n+1/2) - v(n-1/2))/h.
+  pure function coupled_inertia(model, state, damping) result(total)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: damping(2)
@@ -314,21 +316,21 @@ contains
 
     total = 0.0_wp
     do i = 1, size(model%conditions%common_motions)
-      before = common_velocity(model, i, state)
+      before = coupled_velocity(model, i, state)
       associate (common => model%conditions%common_motions(i))
         do k = 1, 2
           if (.not. common%along(k)) cycle
-          call common_drive(model, i, k, state, damping, push, rate)
+          call coupled_acceleration(model, i, k, state, damping, push, rate)
           a = (push - rate*before(k))/(1.0_wp &
             + 0.5_wp*rate*merge(state%dt_before, 0.5_wp*state%dt, state%dt_before > 0.0_wp))
           total = total + sum(state%mass(common%nodes))*a**2
         end do
       end associate
     end do
-  end function common_inertia
+  end function coupled_inertia
 
-  !> Sum of F.a of the forces of rigid walls: their work at time zero is that of the mean of v(0)
-  !> and v(1/2), not that of v(1/2) as for all other forces.
+  !> Sum of F.a of the wall forces: their work at time zero uses the mean of v(0) and v(1/2), other
+  !> forces use v(1/2).
   pure function wall_power(model, state, damping) result(total)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -352,7 +354,7 @@ contains
     end do
   end function wall_power
 
-  !> The elements that rule the time step.
+  !> Log the elements with the smallest stable steps.
   subroutine log_smallest_steps(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -373,9 +375,9 @@ contains
     end do
   end subroutine log_smallest_steps
 
-  !> A warning where a step is too long for the global damping. A free node keeps
-  !> (2 - D dt)/(2 + D dt) of its velocity in a step (node_motion): that never grows, but is no
-  !> longer exp(-D dt) where D dt passes 1, and is below 0 where it passes 2.
+  !> Warn where the step is too long for the global damping. A free node keeps (2 - D dt)/(2 + D dt)
+  !> of its velocity in a step (node_motion): this never grows, but deviates from exp(-D dt) for D
+  !> dt > 1 and is negative for D dt > 2.
   subroutine warn_of_damping(model, dt, log)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: dt          !! first step, s
@@ -403,8 +405,7 @@ contains
         //' of a velocity where exp(-D dt) = '//to_text(exp(-share))//' is meant'
     end associate
     if (share > 2.0_wp) text = text//', and above 2 velocities change sign in every step'
-    call warn(log, text//'; nothing grows, but a smaller D or a smaller step is needed ' &
-      //'to follow it')
+    call warn(log, text//'; the run is stable, but inaccurate: reduce D or the time step')
   end subroutine warn_of_damping
 
 end module explicit_report_m

@@ -1,12 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> What acts from outside in an explicit cycle, and its work: loads, body loads, damping, prescribed
-!> motion of nodes and rigid bodies with the work of its reactions. Forces on boundaries and of
-!> groups of nodes, and their work (trapezoidal rule), where histories ask for them (bndout,
-!> nodfor). The work of body loads and global damping needs sums over all nodes; the team forms them
-!> tile by tile while a tile's nodes are in cache, before they move. Damping acts on the mean of two
-!> half-step velocities, so its work is told one cycle later, from the velocities of the step behind
-!> and of that before, which damped runs keep. Partial sums are added in their order, so that the
-!> bits do not depend on the number of threads.
+!> External actions of an explicit cycle and their work: loads, body loads, damping, prescribed
+!> motion of nodes and rigid bodies. Forces on boundaries and of groups of nodes, and their work
+!> (trapezoidal rule), for bndout and nodfor. The work of body loads and global damping needs sums
+!> over all nodes; the team forms them tile by tile while a tile's nodes are in cache, before they
+!> move. Damping acts on the mean of two half-step velocities, so its work is added one cycle later.
+!> Partial sums are added in a fixed order, so that the bits do not depend on the number of threads.
 module load_work_m
   use conditions_m, only : motion_displacement, motion_velocity, prescribed_motion_t
   use controls_m, only : boundary_load, boundary_body_load, boundary_pressure, group_nodes
@@ -22,35 +20,36 @@ module load_work_m
   use state_m, only : state_t
   implicit none
   private
-  public :: apply_loads, motion_sums_t, plan_sums, sum_motion, count_sums, &
-    find_prescribed_velocities, impose_prescribed, count_motions, count_body_motions, &
-    count_boundary_loads, count_groups
+  public :: apply_loads, motion_sums_t, plan_sums, sum_motion, add_work_of_sums, &
+    find_prescribed_velocities, impose_prescribed, add_motion_work, add_body_motion_work, &
+    add_load_work, add_group_work
 
-  !> Nodes of one partial sum where no tile moves them.
+  !> Nodes in one partial sum outside of tiles.
   integer, parameter :: block_size = 512
 
-  !> Partial sums of one cycle, and what they are for.
+  !> Partial sums of one cycle and their factors.
   type :: motion_sums_t
     integer, allocatable :: blocks(:, :) !! (2, blocks) first and last node
-    integer :: n_special = 0             !! so many of them are of special nodes; the first ones
-    integer :: first = 1, last = 0       !! which of these this process sums
-    integer, allocatable :: starts(:)    !! (processes + 1) where those of each start, if there are
-                                         !! several
-    real(wp), allocatable :: parts(:, :) !! (4, tiles and then blocks) m v_x, m v_y, and what
-                                         !! `sum_drag` gives; allocated only where the deck has
-                                         !! body loads or damping
-    real(wp) :: share(4) = 0.0_wp        !! what each counts: two in external work, two in that of
+    integer :: n_special = 0             !! number of blocks of special nodes, the first ones
+    integer :: first = 1, last = 0       !! blocks that this process sums
+    integer, allocatable :: starts(:)    !! (processes + 1) first block of each process, with
+                                         !! several processes
+    real(wp), allocatable :: parts(:, :) !! (4, tiles, then blocks) m v_x, m v_y, and the values of
+                                         !! `sum_drag`; allocated where the deck has body loads or
                                          !! damping
+    real(wp) :: share(4) = 0.0_wp        !! factors of the sums: two of external work, two of
+                                         !! damping work
   end type motion_sums_t
 
 contains
 
-  !> Loads from outside and their work (trapezoidal rule), body acceleration and damping; the work
-  !> of these two is counted once the sums over all nodes are there.
+  !> Apply loads with their work (trapezoidal rule), body acceleration and damping; the work of the
+  !> latter two is added once the sums over all nodes are complete.
   subroutine apply_loads(model, state, damping, sums)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    real(wp), intent(inout) :: damping(2) !! D per direction: that before in, that of now out
+    real(wp), intent(inout) :: damping(2) !! D per direction: of the previous cycle in, of this one
+                                          !! out
     type(motion_sums_t), intent(inout) :: sums
     real(wp) :: half, body(2)
     integer :: i
@@ -62,8 +61,8 @@ contains
       state%external_work = state%external_work + half*power(state%external, state%motion)
       state%force_special = state%external
     else
-      ! No force yet on the nodes of interfaces and walls. On the others there never is one: to
-      ! write zeros there would only take them out of the caches of other threads.
+      ! Zero the forces at nodes of interfaces and walls. Other nodes never have one; writing there
+      ! would only invalidate the caches of other threads.
       do i = 1, size(state%contacts)
         state%force_special(:, state%contacts(i)%nodes) = 0.0_wp
       end do
@@ -88,10 +87,10 @@ contains
     if (allocated(state%node_damping)) sums%share(3:4) = 1.0_wp ! they hold the rates
   end subroutine apply_loads
 
-  !> Loads on rigid bodies and their work.
+  !> Apply loads on rigid bodies with their work.
   subroutine apply_rigid_loads(model, half, state)
     type(model_t), intent(in) :: model
-    real(wp), intent(in) :: half     !! of the step behind
+    real(wp), intent(in) :: half     !! half of the previous step, s
     type(state_t), intent(inout) :: state
     integer :: i
 
@@ -128,8 +127,8 @@ contains
     end do
   end function power
 
-  !> Set up the sums that a model needs, if any: over its tiles and over blocks of the nodes that no
-  !> tile moves, special ones and those inside rigid bodies.
+  !> Set up the sums that a model needs: over its tiles and over blocks of the nodes outside tiles,
+  !> special ones and those inside rigid bodies.
   pure subroutine plan_sums(model, sums)
     type(model_t), intent(in) :: model
     type(motion_sums_t), intent(out) :: sums
@@ -159,12 +158,12 @@ contains
     blocks(2, :) = min(blocks(1, :) + block_size - 1, last)
   end function blocks_of
 
-  !> Sums over the nodes first .. last; those of damping where the state keeps former velocities,
-  !> which become the present ones. Where each node has its own damping the sums hold it.
+  !> Sums over the nodes first .. last; with damping the previous velocities are replaced by the
+  !> present ones. With nodal damping the sums contain D.
   subroutine sum_motion(first, last, state, sums)
     integer, intent(in) :: first, last
     type(state_t), intent(inout) :: state
-    real(wp), intent(out) :: sums(4) !! m v_x, m v_y, and those of `sum_drag`
+    real(wp), intent(out) :: sums(4) !! m v_x, m v_y, and the values of `sum_drag`
     real(wp) :: v(2)
     integer :: i
 
@@ -186,8 +185,8 @@ contains
     end if
   end subroutine sum_motion
 
-  !> Momentum of the nodes first .. last. Two by two, so that an addition need
-  !> not wait for the one before.
+  !> Momentum of the nodes first .. last. Two partial sums, so that an addition need not wait for
+  !> the previous one.
   pure function sum_momentum(first, last, mass, motion) result(sums)
     integer, intent(in) :: first, last
     real(wp), intent(in) :: mass(*)      !! of all nodes
@@ -206,14 +205,13 @@ contains
     sums = odd + even
   end function sum_momentum
 
-  !> What damping with D = 1 took in the cycle before from the nodes first .. last: forces m w with
-  !> the mean w of former and present velocity act over half of the step before and half of the step
-  !> behind.
+  !> Damping work with D = 1 in the previous cycle on the nodes first .. last: forces m w with the
+  !> mean w of previous and present velocity act over half of either step.
   pure subroutine sum_drag(first, last, mass, motion, steps, previous, sums)
     integer, intent(in) :: first, last
     real(wp), intent(in) :: mass(*)         !! of all nodes
     real(wp), intent(in) :: motion(4, *)    !! of all nodes
-    real(wp), intent(in) :: steps(2)        !! that before, that behind
+    real(wp), intent(in) :: steps(2)        !! previous and present step, s
     real(wp), intent(inout) :: previous(2, *) !! velocities of the step before; then the present
                                               !! ones
     real(wp), intent(out) :: sums(2)        !! J/m over D, along x and y
@@ -228,8 +226,8 @@ contains
     end do
   end subroutine sum_drag
 
-  !> Work since the last instant, once the sums are complete.
-  pure subroutine count_sums(sums, external_work, damping_work)
+  !> Add the work since the last instant, once the sums are complete.
+  pure subroutine add_work_of_sums(sums, external_work, damping_work)
     type(motion_sums_t), intent(in) :: sums
     real(wp), intent(inout) :: external_work, damping_work
     real(wp) :: work(4)
@@ -238,12 +236,12 @@ contains
     work = sums%share*sum(sums%parts, 2)
     external_work = external_work + (work(1) + work(2))
     damping_work = damping_work + (work(3) + work(4))
-  end subroutine count_sums
+  end subroutine add_work_of_sums
 
   !> v(n+1/2) of all prescribed degrees of freedom, from u(n) and v(n-1/2). Nodes of one set follow
-  !> one curve, looked up once: for each node it took 11 % of the sliding scene. A node on a
-  !> displacement curve starts with the velocity of its first step: from rest the start would be a
-  !> blow of half its kinetic energy that no curve asks for.
+  !> one curve, looked up once: a look-up per node took 11 % of the sliding example. A node on a
+  !> displacement curve starts with the velocity of its first step; a start from rest would add an
+  !> impact of half its kinetic energy.
   subroutine find_prescribed_velocities(model, state, velocity)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -277,13 +275,13 @@ contains
     end do
   end subroutine find_prescribed_velocities
 
-  !> Reactions of the prescribed motions of nodes, R = m a + f_int - f_special - m g + D m v(n), and
-  !> their work.
-  subroutine count_motions(model, velocity, damping, due, state)
+  !> Reactions R = m a + f_int - f_special - m g + D m v(n) of prescribed nodal motions, and their
+  !> work.
+  subroutine add_motion_work(model, velocity, damping, due, state)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: velocity(:)    !! (n_motion) v(n+1/2)
     real(wp), intent(in) :: damping(2)     !! D per direction
-    logical, intent(in) :: due(2)          !! the half steps before and after the instant
+    logical, intent(in) :: due(2)          !! the half steps before and after t(n)
     type(state_t), intent(inout) :: state
     real(wp) :: reactions(size(velocity)), d(2)
     integer :: i
@@ -298,15 +296,15 @@ contains
           + state%internal_force(k, node) - state%force_special(k, node)
       end associate
     end do
-    call count_reactions(model%conditions%motions, reactions, state%prescribed_velocity, velocity, &
-      due, model%controls%output%boundaries%motion_rows, state)
-  end subroutine count_motions
+    call add_reaction_work(model%conditions%motions, reactions, state%prescribed_velocity, &
+      velocity, due, model%controls%output%boundaries%motion_rows, state)
+  end subroutine add_motion_work
 
-  !> The same of rigid bodies.
-  subroutine count_body_motions(model, damping, due, state)
+  !> Reactions of prescribed motions of rigid bodies, and their work.
+  subroutine add_body_motion_work(model, damping, due, state)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: damping(2)     !! D per direction
-    logical, intent(in) :: due(2)          !! the half steps before and after the instant
+    logical, intent(in) :: due(2)          !! the half steps before and after t(n)
     type(state_t), intent(inout) :: state
     real(wp), dimension(size(model%conditions%rigid_motions)) :: reactions, old, next
     real(wp) :: rate(3), body(3)
@@ -324,30 +322,32 @@ contains
           - body(k) + 0.5_wp*rate(k)*(next(i) + old(i))) - rigid%force(k)
       end associate
     end do
-    call count_reactions(model%conditions%rigid_motions, reactions, old, next, due, &
+    call add_reaction_work(model%conditions%rigid_motions, reactions, old, next, due, &
       model%controls%output%boundaries%body_motion_rows, state)
-  end subroutine count_body_motions
+  end subroutine add_body_motion_work
 
-  !> Work R.v dt/2 of reactions over half steps, in that of the run and in their rows.
-  subroutine count_reactions(motions, reactions, old, next, due, rows, state)
+  !> Add the work R.v dt/2 of reactions over half steps to the external work and to the rows of
+  !> bndout.
+  subroutine add_reaction_work(motions, reactions, old, next, due, rows, state)
     type(prescribed_motion_t), intent(in) :: motions(:)
     real(wp), intent(in) :: reactions(:), old(:), next(:) !! R, v(n-1/2), v(n+1/2)
     logical, intent(in) :: due(2)
-    integer, allocatable, intent(in) :: rows(:)           !! of each motion; not there if not asked
+    integer, allocatable, intent(in) :: rows(:)           !! row of each motion; not allocated
+                                                          !! without bndout
     type(state_t), intent(inout) :: state
-    real(wp) :: halves(2), work
+    real(wp) :: half_steps(2), work
     integer :: i
 
-    halves = merge(0.5_wp*[state%dt_before, state%dt], 0.0_wp, due)
+    half_steps = merge(0.5_wp*[state%dt_before, state%dt], 0.0_wp, due)
     work = 0.0_wp
     do i = 1, size(motions)
       if (is_active(motions(i), state%time)) &
-        work = work + reactions(i)*(halves(1)*old(i) + halves(2)*next(i))
+        work = work + reactions(i)*(half_steps(1)*old(i) + half_steps(2)*next(i))
     end do
     state%external_work = state%external_work + work
     if (.not. allocated(state%boundary_work)) return
-    ! Works of boundaries may begin in this instant.
-    if (state%cycle == state%boundary_since) halves(1) = 0.0_wp
+    ! The work of boundaries may begin at this instant.
+    if (state%cycle == state%boundary_since) half_steps(1) = 0.0_wp
     do i = 1, size(motions)
       state%boundary_force(motions(i)%direction, rows(i)) = 0.0_wp
     end do
@@ -355,15 +355,15 @@ contains
       if (.not. is_active(motions(i), state%time)) cycle
       state%boundary_force(motions(i)%direction, rows(i)) = reactions(i)
       state%boundary_work(rows(i)) = state%boundary_work(rows(i)) + reactions(i) &
-        *(halves(1)*old(i) + halves(2)*next(i))
+        *(half_steps(1)*old(i) + half_steps(2)*next(i))
     end do
-  end subroutine count_reactions
+  end subroutine add_reaction_work
 
-  !> Put prescribed nodes where they belong; `displacement` is u(n), from before the nodes moved.
+  !> Impose prescribed motions on the nodes.
   subroutine impose_prescribed(model, velocity, displacement, state)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: velocity(:)     !! (n_motion) v(n+1/2)
-    real(wp), intent(in) :: displacement(:) !! (n_motion) u(n)
+    real(wp), intent(in) :: displacement(:) !! (n_motion) u(n), from before the nodes moved
     type(state_t), intent(inout) :: state
     integer :: i
 
@@ -380,8 +380,9 @@ contains
     end do
   end subroutine impose_prescribed
 
-  !> Loads at the beginning of a cycle, once the loads of the cycle are known.
-  subroutine count_boundary_loads(model, state)
+  !> Add the work of loads in the rows of bndout at the beginning of a cycle, once the loads of the
+  !> cycle are known.
+  subroutine add_load_work(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     real(wp) :: previous(3, size(state%boundary_work)), velocity(3), half
@@ -405,13 +406,13 @@ contains
           + half*sum((previous(:, i) + state%boundary_force(:, i))*velocity)
       end do
     end associate
-  end subroutine count_boundary_loads
+  end subroutine add_load_work
 
-  !> Internal forces of groups of nodes, and their work up to the instant, and from it on once the
-  !> nodes have moved.
-  subroutine count_groups(model, due, state)
+  !> Internal forces of node groups, and their work over the half steps before and after t(n), the
+  !> latter once the nodes have moved.
+  subroutine add_group_work(model, due, state)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: due(2)          !! the half steps before and after the instant
+    logical, intent(in) :: due(2)          !! the half steps before and after t(n)
     type(state_t), intent(inout) :: state
 
     associate (nodes => group_nodes(model%controls%output%force_groups))
@@ -423,6 +424,6 @@ contains
       state%group_work = state%group_work + 0.5_wp*state%dt &
         *sum(state%group_force*state%group_velocity, 1)
     end associate
-  end subroutine count_groups
+  end subroutine add_group_work
 
 end module load_work_m

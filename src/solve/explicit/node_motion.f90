@@ -1,11 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> The leap-frog motion of the nodes: v(n+1/2) = [(1 - D h/2) v(n-1/2) + h a]/(1 + D h/2), u(n+1) =
-!> u(n) + dt v(n+1/2), with h the mean of the two steps. The damping acts on the mean of the two
-!> velocities, so it never limits the step. Where the deck damps parts (*DAMPING_PART_MASS) a node
-!> has the mean D over the masses that elements bring to it, and those on nodes, which have the
-!> global damping alone; nodes of a rigid body have that of its part. Rigid bodies: resultants,
-!> leap-frog of centre and angle, and the nodes after them (doc/theory/rigid_bodies.md), by one
-!> thread, in the order of the nodes.
+!> Leap-frog motion of the nodes: v(n+1/2) = [(1 - D h/2) v(n-1/2) + h a]/(1 + D h/2), u(n+1) = u(n)
+!> + dt v(n+1/2), with h the mean of the two steps. Damping acts on the mean of the two velocities
+!> and never limits the step. With *DAMPING_PART_MASS the D of a node is the mean over the masses of
+!> its elements; lumped masses have the global damping, nodes of a rigid body the damping of its
+!> part. Rigid bodies: resultants, leap-frog of centre and angle, then their nodes
+!> (doc/theory/rigid_bodies.md), by one thread in the order of the nodes.
 module node_motion_m
   use conditions_m, only : motion_displacement
   use element_mass_m, only : element_shares
@@ -13,26 +12,27 @@ module node_motion_m
   use layout_m, only : slot_part
   use loads_m, only : damping_rates, is_active, next_velocity, part_damping_rate
   use model_m, only : model_t
-  use rigid_state_m, only : rigid_state_t, turn_of, shift_by_turn, velocity_of
+  use rigid_state_m, only : rigid_state_t, rotation_terms, rotation_shift, velocity_of
   use snapshot_m, only : snapshot_t
   use state_m, only : state_t
   implicit none
   private
-  public :: leap_t, make_leap, find_factors, look_ahead, move_tile_nodes, move_special_nodes, &
-    move_damped_nodes, follow_damping, solve_rigids, damping_of, move_rigids, fill_rigids
+  public :: leap_t, make_leap, motion_factors, predict_velocity, move_tile_nodes, &
+    move_special_nodes, &
+    move_damped_nodes, update_damping, solve_rigids, damping_of, move_rigids, fill_rigids
 
-  !> Factors of one leap, the same for all nodes.
+  !> Factors of one leap-frog step, common to all nodes.
   type :: leap_t
     real(wp) :: dt = 0.0_wp        !! t(n+1) - t(n)
     real(wp) :: mean = 0.0_wp      !! mean of the steps before and after
-    real(wp) :: half(2) = 0.0_wp   !! what an acceleration counts in the velocity
-    real(wp) :: keep(2) = 1.0_wp   !! what the old velocity counts
+    real(wp) :: half(2) = 0.0_wp   !! factor of an acceleration in the velocity
+    real(wp) :: keep(2) = 1.0_wp   !! factor of the old velocity
     real(wp) :: body(2) = 0.0_wp   !! acceleration of every free node
   end type leap_t
 
 contains
 
-  !> Factors from the steps before and after, damping and body acceleration.
+  !> Set the factors from the steps before and after t(n), damping and body acceleration.
   pure function make_leap(dt_before, dt, damping, body) result(leap)
     real(wp), intent(in) :: dt_before, dt
     real(wp), intent(in) :: damping(2) !! D per direction
@@ -48,8 +48,8 @@ contains
     leap%body = body
   end function make_leap
 
-  !> Factors of one node, which has a D of its own where parts are damped.
-  pure subroutine find_factors(leap, state, node, half, keep)
+  !> Factors of one node, with its own D where parts are damped.
+  pure subroutine motion_factors(leap, state, node, half, keep)
     type(leap_t), intent(in) :: leap
     type(state_t), intent(in) :: state
     integer, intent(in) :: node
@@ -61,24 +61,24 @@ contains
     half = leap%mean/(1.0_wp + 0.5_wp*state%node_damping(:, node)*leap%mean)
     keep = (1.0_wp - 0.5_wp*state%node_damping(:, node)*leap%mean) &
       /(1.0_wp + 0.5_wp*state%node_damping(:, node)*leap%mean)
-  end subroutine find_factors
+  end subroutine motion_factors
 
-  !> v(n+1/2) of a special node by the forces that are known, and what a force adds to it.
-  subroutine look_ahead(leap, state, node, mobility, velocity)
+  !> v(n+1/2) of a special node by the forces known so far, and its mobility dv/df.
+  subroutine predict_velocity(leap, state, node, mobility, velocity)
     type(leap_t), intent(in) :: leap
     type(state_t), intent(in) :: state
     integer, intent(in) :: node
     real(wp), intent(out) :: mobility(2), velocity(2)
     real(wp) :: half(2), keep(2)
 
-    call find_factors(leap, state, node, half, keep)
+    call motion_factors(leap, state, node, half, keep)
     mobility = half*state%inverse_mass(:, node)
     velocity = keep*state%motion(3:4, node) + half*merge(leap%body, 0.0_wp, &
       state%inverse_mass(:, node) > 0.0_wp) + mobility*(state%force_special(:, node) &
       - state%internal_force(:, node))
-  end subroutine look_ahead
+  end subroutine predict_velocity
 
-  !> Move the nodes first .. last where each has its own damping.
+  !> Move the nodes first .. last with nodal damping.
   subroutine move_damped_nodes(leap, n_special, first, last, force, state)
     type(leap_t), intent(in) :: leap
     integer, intent(in) :: n_special
@@ -89,7 +89,7 @@ contains
     integer :: i
 
     do i = first, last
-      call find_factors(leap, state, i, half, keep)
+      call motion_factors(leap, state, i, half, keep)
       push = -force(:, i)
       if (i <= n_special) push = state%force_special(:, i) + push
       state%motion(3:4, i) = keep*state%motion(3:4, i) + half*(merge(leap%body, 0.0_wp, &
@@ -130,7 +130,7 @@ contains
     end do
   end subroutine move_tile_nodes
 
-  !> Move the special nodes first .. last; their internal forces stand in state%internal_force.
+  !> Move the special nodes first .. last; their internal forces are in state%internal_force.
   subroutine move_special_nodes(leap, first, last, state)
     type(leap_t), intent(in) :: leap
     integer, intent(in) :: first, last
@@ -151,12 +151,10 @@ contains
     end associate
   end subroutine move_special_nodes
 
-  !> Form the rates of the nodes anew where those of parts have changed since, or `rates` is not
-  !> there.
-  subroutine follow_damping(model, rates, state)
+  !> Update the nodal damping if the rates of parts have changed, or if `rates` is not allocated.
+  subroutine update_damping(model, rates, state)
     type(model_t), intent(in) :: model
-    real(wp), allocatable, intent(inout) :: rates(:, :)  !! (2, n_part + 1) as `damping_rates` has
-                                                         !! them
+    real(wp), allocatable, intent(inout) :: rates(:, :)  !! (2, n_part + 1) as from `damping_rates`
     type(state_t), intent(inout) :: state
     real(wp) :: now(2, size(model%parts) + 1), shares(4)
     integer :: i, k, slot
@@ -193,9 +191,9 @@ contains
       state%node_damping(1, model%rigids(i)%nodes) = rates(1, model%rigids(i)%part)
       state%node_damping(2, model%rigids(i)%nodes) = rates(2, model%rigids(i)%part)
     end do
-  end subroutine follow_damping
+  end subroutine update_damping
 
-  !> Accelerations and v(n+1/2) of all bodies from the forces on their nodes.
+  !> Accelerations and v(n+1/2) of all rigid bodies from the forces on their nodes.
   subroutine solve_rigids(model, damping, state)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: damping(2)     !! D per direction
@@ -206,13 +204,13 @@ contains
     mean = 0.5_wp*(state%dt_before + state%dt)
     do i = 1, size(state%rigids)
       associate (body => model%rigids(i), rigid => state%rigids(i))
-        ! Resultants; nodes that no force reaches come after the special ones.
+        ! Resultants; nodes without forces come after the special ones.
         total = 0.0_wp
-        turn = turn_of(rigid%place(3))
+        turn = rotation_terms(rigid%displacement(3))
         do k = 1, size(body%nodes)
           if (body%nodes(k) > model%layout%n_special) exit
           force = state%force_special(:, body%nodes(k)) - state%internal_force(:, body%nodes(k))
-          arm = rigid%arms(:, k) + shift_by_turn(turn, rigid%arms(:, k))
+          arm = rigid%arms(:, k) + rotation_shift(turn, rigid%arms(:, k))
           total = total + [force, arm(1)*force(2) - arm(2)*force(1)]
         end do
         rigid%force = total + rigid%load
@@ -232,8 +230,8 @@ contains
         associate (rigid => state%rigids(motion%node), along => motion%direction)
           if (.not. is_active(motion, state%time)) cycle
           rigid%next_velocity(along) = next_velocity(model, motion, state%time, state%dt, &
-            state%dt_before, rigid%place(along), rigid%velocity(along))
-          ! On a displacement curve it starts with the velocity of its first step, as a node does.
+            state%dt_before, rigid%displacement(along), rigid%velocity(along))
+          ! On a displacement curve a body starts with the velocity of its first step, as nodes do.
           if (motion%kind == motion_displacement .and. .not. state%dt_before > 0.0_wp) &
             rigid%velocity(along) = rigid%next_velocity(along)
           rigid%acceleration(along) = (rigid%next_velocity(along) - rigid%velocity(along))/mean
@@ -242,8 +240,8 @@ contains
     end do
   end subroutine solve_rigids
 
-  !> D of each degree of freedom: the turn is damped by the forces -D m v on
-  !> the nodes as they now lie.
+  !> D of each degree of freedom. The rotation is damped by the forces -D m v on the nodes in their
+  !> current positions.
   pure function damping_of(rigid, damping) result(rate)
     type(rigid_state_t), intent(in) :: rigid
     real(wp), intent(in) :: damping(2)
@@ -253,45 +251,47 @@ contains
     rate(1:2) = damping
     rate(3) = damping(1)
     if (.not. abs(damping(1) - damping(2)) > 0.0_wp) return
-    along_x = cos(rigid%place(3))**2*rigid%second(1) + sin(rigid%place(3))**2*rigid%second(2) &
-      - sin(2.0_wp*rigid%place(3))*rigid%second(3)
+    along_x = cos(rigid%displacement(3))**2*rigid%second(1) + &
+      sin(rigid%displacement(3))**2*rigid%second(2) &
+      - sin(2.0_wp*rigid%displacement(3))*rigid%second(3)
     rate(3) = (damping(2)*along_x + damping(1)*(rigid%inertia(3) - along_x))/rigid%inertia(3)
   end function damping_of
 
-  !> All bodies to u(n+1), and those of their nodes that anything asks for in the next cycle.
-  !> The velocity of a node is its displacement over the step, as for all nodes: work is
-  !> force times displacement.
+  !> Move all rigid bodies to u(n+1), and those of their nodes that the next cycle needs. The
+  !> velocity of a node is its displacement over the step, as for all nodes: work is force times
+  !> displacement.
   subroutine move_rigids(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    real(wp) :: turn(2), half_turn(2), speed(3)
+    real(wp) :: turn(2), half_rotation(2), speed(3)
     logical :: sums_all
     integer :: i, k
 
-    ! Gravity and damping count the momentum of all nodes.
+    ! Gravity and damping need the momentum of all nodes.
     sums_all = size(model%conditions%body_loads) > 0 .or. allocated(model%conditions%damping) &
       .or. allocated(model%conditions%part_damping)
     do i = 1, size(state%rigids)
       associate (nodes => model%rigids(i)%nodes, rigid => state%rigids(i), dt => state%dt)
         speed = rigid%next_velocity
-        half_turn = turn_of(rigid%place(3) + 0.5_wp*dt*speed(3))
+        half_rotation = rotation_terms(rigid%displacement(3) + 0.5_wp*dt*speed(3))
         rigid%velocity = speed
-        rigid%place = rigid%place + dt*speed
-        turn = turn_of(rigid%place(3))
+        rigid%displacement = rigid%displacement + dt*speed
+        turn = rotation_terms(rigid%displacement(3))
         ! The chord is a little shorter than the arc.
         speed(3) = 2.0_wp*sin(0.5_wp*dt*speed(3))/dt
         do k = 1, size(nodes)
           if (nodes(k) > model%layout%n_special .and. .not. sums_all) exit
           associate (arm => rigid%arms(:, k))
-            state%motion(1:2, nodes(k)) = rigid%place(1:2) + shift_by_turn(turn, arm)
-            state%motion(3:4, nodes(k)) = velocity_of(speed, arm + shift_by_turn(half_turn, arm))
+            state%motion(1:2, nodes(k)) = rigid%displacement(1:2) + rotation_shift(turn, arm)
+            state%motion(3:4, nodes(k)) = velocity_of(speed, arm + rotation_shift(half_rotation, &
+              arm))
           end associate
         end do
       end associate
     end do
   end subroutine move_rigids
 
-  !> Motion of all nodes of rigid bodies at the present instant.
+  !> Motion of all nodes of rigid bodies at t(n).
   subroutine fill_rigids(model, state, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -301,12 +301,13 @@ contains
 
     do i = 1, size(state%rigids)
       associate (rigid => state%rigids(i))
-        turn = turn_of(rigid%place(3))
+        turn = rotation_terms(rigid%displacement(3))
         velocity = rigid%velocity + 0.5_wp*state%dt_before*rigid%acceleration
         do k = 1, size(model%rigids(i)%nodes)
           node = model%rigids(i)%nodes(k)
-          snapshot%displacement(:, node) = rigid%place(1:2) + shift_by_turn(turn, rigid%arms(:, k))
-          arm = rigid%arms(:, k) + shift_by_turn(turn, rigid%arms(:, k))
+          snapshot%displacement(:, node) = rigid%displacement(1:2) + rotation_shift(turn, &
+            rigid%arms(:, k))
+          arm = rigid%arms(:, k) + rotation_shift(turn, rigid%arms(:, k))
           snapshot%velocity(:, node) = velocity_of(velocity, arm)
           snapshot%acceleration(:, node) = velocity_of(rigid%acceleration, arm) - velocity(3)**2*arm
         end do

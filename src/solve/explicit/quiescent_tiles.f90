@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> Tiles whose elements need no step. A tile rests once a step with all of its nodes in one motion,
-!> to the last bit, has left every value of its elements as it was and no force: the next step
-!> would then do the same, for elements see only differences of their nodes. It wakes as soon as one
-!> of its special nodes moves otherwise, which nothing but contact, loads and tiles around it can
-!> bring about, and is stepped from then on. Tiles that rest at velocity zero amid others that do
-!> are not even looked at.
+!> Tiles whose elements need no step. A tile is quiescent, or in rigid translation, once a step with
+!> all of its nodes in the same motion, to the last bit, has changed no value of its elements and
+!> left no force: the next step would do the same, since elements depend on differences of nodes
+!> only. The tile becomes active again as soon as one of its special nodes moves differently, by
+!> contact, loads or neighbouring tiles, and stays active. Quiescent tiles amid quiescent tiles are
+!> not monitored.
 module quiescent_tiles_m
   use element_dispatch_m, only : gather_values, same_bits
   use packed_buffer_m, only : packed_buffer_t
@@ -21,46 +21,47 @@ module quiescent_tiles_m
   public :: tile_states_t, tile_active, tile_translating, plan_tile_states, save_tile, test_tile, &
     check_translation, update_tile_states, report_tile_states
 
-  !> Status of a tile: stepped in each cycle, or not as it rests or all of its nodes move by the
-  !> same; above zero so many cycles are left in which it may come to rest.
+  !> Status of a tile: active (above zero: number of cycles left in which it may become inactive),
+  !> quiescent, in rigid translation.
   integer, parameter :: tile_active = 0, tile_quiescent = -1, tile_translating = -2
 
-  !> Cycles in which a tile may come to rest: signs of zeros may change in the first ones.
+  !> Cycles in which a tile may become inactive: signs of zeros may change in the first ones.
   integer, parameter :: n_try = 4
 
-  !> Which tiles rest, and which are still looked at.
+  !> Activity of the tiles.
   type :: tile_states_t
     integer, allocatable :: status(:)    !! (tiles)
     integer, allocatable :: stepped(:)   !! tiles to step, of this process
-    integer, allocatable :: monitored(:) !! tile_quiescent ones that may wake, or whose nodes move
-    integer, allocatable :: summed(:)    !! runs that are summed and moved
-    logical :: monitors_all = .false.    !! tiles that rest are all looked at
-    real(wp), allocatable :: zero_force(:, :) !! (2, n_local) this and the next three only once
-                                         !! tiles rest
+    integer, allocatable :: monitored(:) !! inactive tiles that may become active, or whose nodes
+                                         !! move
+    integer, allocatable :: summed(:)    !! runs of special nodes that are summed and moved
+    logical :: monitors_all = .false.    !! all inactive tiles are monitored
+    real(wp), allocatable :: zero_force(:, :) !! (2, n_local) zeros; this and the next three are
+                                              !! allocated once a tile is inactive
     logical, allocatable :: is_driven(:)  !! (tiles) contact, loads, prescribed motion, walls or
-                                         !! bodies that are rigid may move its nodes
-    integer, allocatable :: first(:)     !! (tiles + 1) where those start that have nodes in common
-                                         !! with each tile ...
+                                          !! rigid bodies may move its nodes
+    integer, allocatable :: first(:)     !! (tiles + 1) start of the tiles that share nodes with
+                                         !! each tile ...
     integer, allocatable :: neighbours(:) !! ... in this list
     integer :: n_inactive = 0            !! at the start of the cycle
-    integer :: n_activated = 0, n_deactivated = 0 !! since
-    integer(long) :: n_skipped = 0       !! steps of tiles that were not taken
+    integer :: n_activated = 0, n_deactivated = 0 !! in this cycle
+    integer(long) :: n_skipped = 0       !! tile steps that were skipped
     integer(long) :: n_cycle = 0
   end type tile_states_t
 
 contains
 
-  !> All tiles are tile_active, and may come to rest if the model lets them.
+  !> Set all tiles active, and let them become inactive if the model allows it.
   subroutine plan_tile_states(model, partition, monitors_all, tile_states)
     type(model_t), intent(in) :: model
     type(partition_t), intent(in) :: partition
-    logical, intent(in) :: monitors_all  !! tile_quiescent tiles have to be looked at in each cycle
+    logical, intent(in) :: monitors_all  !! inactive tiles must be monitored in each cycle
     type(tile_states_t), intent(out) :: tile_states
     logical :: is_allowed
     integer :: i
 
-    ! Nothing but motion of its nodes can change the next step of a tile: no body load, no mass that
-    ! grows, no element that leaves the mesh at a given time.
+    ! Only motion of its nodes may change the next step of a tile: no body load, no growing mass, no
+    ! erosion at a given time.
     is_allowed = size(model%conditions%body_loads) == 0 .and. (model%controls%masses_stay &
       .or. .not. abs(model%controls%mass_step) > 0.0_wp)
     do i = 1, size(model%materials)
@@ -70,7 +71,7 @@ contains
     associate (n => size(model%layout%tiles), first => partition%first_tile, &
       last => partition%last_tile)
       allocate (tile_states%status(n), source=tile_active)
-      ! Where all bodies are rigid the one tile is empty.
+      ! With rigid bodies only, the one tile is empty.
       if (is_allowed) tile_states%status(first:last) = merge(n_try, tile_active, &
         model%layout%tiles(first:last)%last_chunk >= model%layout%tiles(first:last)%first_chunk)
       allocate (tile_states%stepped(last - first + 1), source=[(i, i = first, last)])
@@ -80,22 +81,22 @@ contains
     tile_states%monitors_all = monitors_all
   end subroutine plan_tile_states
 
-  !> Before the step of a tile that is tried: what its elements are, if its nodes are in one motion;
-  !> if not it is tile_active for good.
+  !> Save the element values of a tile on trial before its step, if all nodes have the same motion;
+  !> else the tile stays active.
   subroutine save_tile(model, i_tile, state, tile_states, before)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_tile
-    type(state_t), intent(inout) :: state !! as before
+    type(state_t), intent(inout) :: state !! unchanged
     type(tile_states_t), intent(inout) :: tile_states
-    real(wp), allocatable, intent(out) :: before(:) !! not there where it can not come to rest
+    real(wp), allocatable, intent(out) :: before(:) !! not allocated where the tile cannot become
+                                                    !! inactive
     real(wp) :: one(4)
     logical :: is_uniform
     integer :: i
     type(packed_buffer_t) :: buffer
 
     one = motion_of(model%layout, model%layout%tiles(i_tile), state%motion)
-    ! Each element of an axisymmetric body is strained by a radial motion, and damping of parts is
-    ! not that of one tile.
+    ! A radial motion strains axisymmetric elements, and with damping of parts velocities change.
     is_uniform = is_translation(model%layout, model%layout%tiles(i_tile), one, state%motion)
     if (model%is_axisymmetric) is_uniform = is_uniform .and. same_bits(one(1:3:2), [0.0_wp, 0.0_wp])
     if (allocated(state%node_damping)) &
@@ -110,7 +111,7 @@ contains
     call move_alloc(buffer%values, before)
   end subroutine save_tile
 
-  !> Behind it: the tile rests if nothing has come of the step.
+  !> Set a tile on trial inactive if the step has changed no value and left no force.
   subroutine test_tile(model, i_tile, before, force, state, tile_states)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_tile
@@ -140,7 +141,7 @@ contains
     end associate
   end subroutine test_tile
 
-  !> Whether a tile_quiescent tile goes on to rest in this cycle; if not it is tile_active for good.
+  !> Check whether an inactive tile stays inactive in this cycle; else it is active from now on.
   subroutine check_translation(layout, i_tile, motion, tile_states)
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: i_tile
@@ -155,7 +156,7 @@ contains
     tile_states%n_activated = tile_states%n_activated + 1
   end subroutine check_translation
 
-  !> Motion of one node of a tile, an interior one if it has any.
+  !> Motion of one node of a tile, an interior one if there is any.
   pure function motion_of(layout, tile, motion) result(one)
     type(layout_t), intent(in) :: layout
     type(tile_t), intent(in) :: tile
@@ -169,7 +170,7 @@ contains
     end if
   end function motion_of
 
-  !> Whether all special nodes of a tile have this motion, in its bits.
+  !> Whether all special nodes of a tile have this motion, bit by bit.
   pure function is_translation(layout, tile, one, motion) result(same)
     type(layout_t), intent(in) :: layout
     type(tile_t), intent(in) :: tile
@@ -191,7 +192,7 @@ contains
     same = all(found == 0_long)
   end function is_translation
 
-  !> At the end of a cycle: steps that were not taken, and the tiles of the next one.
+  !> Count skipped steps at the end of a cycle, and list the tiles of the next one.
   subroutine update_tile_states(model, partition, tile_states)
     type(model_t), intent(in) :: model
     type(partition_t), intent(in) :: partition
@@ -207,9 +208,8 @@ contains
     call list_tiles(model, partition, tile_states)
   end subroutine update_tile_states
 
-  !> The tiles of the next cycle. A tile_quiescent one is looked at if it may wake, for its nodes
-  !> may have moved, or a neighbour may, which would then push its nodes. Those of other processes
-  !> count as tile_active: what becomes of them is not known here.
+  !> List the tiles of the next cycle. An inactive tile is monitored if its nodes may move or a
+  !> neighbour may become active. Tiles of other processes count as active.
   subroutine list_tiles(model, partition, tile_states)
     type(model_t), intent(in) :: model
     type(partition_t), intent(in) :: partition
@@ -243,8 +243,8 @@ contains
       is_monitored(partition%run_tiles))
   end subroutine list_tiles
 
-  !> Which tiles have nodes that feel more than their elements, and which have special nodes in
-  !> common.
+  !> Find the tiles whose nodes have other forces than those of elements, and the tiles that share
+  !> special nodes.
   subroutine find_neighbours(model, tile_states)
     type(model_t), intent(in) :: model
     type(tile_states_t), intent(inout) :: tile_states
@@ -273,12 +273,12 @@ contains
         tile_states%neighbours = [tile_states%neighbours, pack([(k, k=1, size(tiles))], is_near)]
       end do
       tile_states%first(size(tiles) + 1) = size(tile_states%neighbours) + 1
-      ! The last one has the nodes without element, too.
+      ! The last tile has the nodes without elements.
       tile_states%is_driven(size(tiles)) = .true.
     end associate
   end subroutine find_neighbours
 
-  !> The log tells how many steps of tiles were taken, if not all.
+  !> Log the number of tile steps, if some were skipped.
   subroutine report_tile_states(ranks, tile_states, log)
     type(ranks_t), intent(inout) :: ranks
     type(tile_states_t), intent(in) :: tile_states
@@ -295,7 +295,8 @@ contains
     n_skipped = nint(sum(skipped), long)
     if (n_skipped == 0) return
     write (figures, '(ss,i0,a,i0)') n - n_skipped, ' of ', n
-    call write_log(log, 'steps of tiles: '//trim(figures)//', in the others all nodes moved as one')
+    call write_log(log, &
+      'steps of tiles: '//trim(figures)//' (the others are quiescent or in rigid translation)')
   end subroutine report_tile_states
 
 end module quiescent_tiles_m

@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> What the processes of an explicit run exchange. Each computes the elements of its tiles and moves
-!> their interior nodes. In each cycle those that share a border hear each other's forces on it
-!> (raw, slot by slot: they are added in their fixed order), and all hear the forces on nodes that
-!> all compute and what the elements have come to. The first process gathers the rest where files
-!> ask for it.
+!> Exchange between the processes of an explicit run. Each process computes the elements of its
+!> tiles and moves their interior nodes. In each cycle neighbours exchange the forces at shared
+!> borders (halo exchange, slot by slot, since they are added in a fixed order), and all processes
+!> exchange forces on nodes that all compute, check results and notices. The first process gathers
+!> other data when files need it.
 module rank_exchange_m
   use block_state_m, only : block_state_t
   use cut_forces_m, only : find_cut_forces
@@ -34,23 +34,24 @@ module rank_exchange_m
   !> and a stop by a signal.
   integer, parameter :: n_notice = 7, notice_eroded = 1, notice_failed = 2, notice_error = 3, &
     notice_dump = 4, notice_plot = 5, notice_stop = 6, notice_signal = 7
-  !> Chunks of a piece at most.
+  !> Largest number of chunks in one message.
   integer, parameter :: most_chunks = 128
 
-  !> What is exchanged in each cycle.
+  !> Buffers of the exchange in each cycle.
   type :: halo_t
-    integer, allocatable :: starts(:)  !! (n + 1) where the piece of each process for all starts
-    real(wp), allocatable :: values(:)
-    real(wp), allocatable :: outgoing(:, :), incoming(:, :) !! (2, slots) forces on borders
-    integer(long) :: sent(2) = 0, joined(2) = 0 !! what `ranks_t` counts, of these exchanges alone
+    integer, allocatable :: starts(:)  !! (n + 1) start of the values of each process for all
+    real(wp), allocatable :: values(:) !! values for all
+    real(wp), allocatable :: outgoing(:, :), incoming(:, :) !! (2, slots) forces at borders
+    integer(long) :: sent(2) = 0, joined(2) = 0 !! message counts of `ranks_t` of this exchange
+                                                !! alone
     integer(long) :: n_cycle = 0
-    integer :: n_gone = 0                !! elements of this process that are known to have left
-    integer, allocatable :: n_failed(:)  !! failed points of its chunks that are known
+    integer :: n_removed = 0             !! known eroded elements of this process
+    integer, allocatable :: n_failed(:)  !! known failed points of its chunks
   end type halo_t
 
 contains
 
-  !> Room for what is exchanged in each cycle.
+  !> Allocate the buffers of the exchange in each cycle.
   pure subroutine plan_halo(partition, mine, elements, sums, halo)
     type(partition_t), intent(in) :: partition
     integer, intent(in) :: mine !! number of this process
@@ -65,13 +66,12 @@ contains
     allocate (halo%outgoing(2, size(partition%out_slots)), source=0.0_wp)
     allocate (halo%incoming(2, size(partition%in_slots)), source=0.0_wp)
     associate (first => partition%chunks(mine), last => partition%chunks(mine + 1) - 1)
-      if (allocated(elements%erosion)) halo%n_gone = sum(elements%erosion%n_gone(first:last))
+      if (allocated(elements%erosion)) halo%n_removed = sum(elements%erosion%n_removed(first:last))
       if (allocated(elements%n_failed)) halo%n_failed = elements%n_failed(first:last)
     end associate
   end subroutine plan_halo
 
-  !> Forces of tiles on special nodes and, where they are formed, sums over nodes; `exchange_checks`
-  !> follows.
+  !> Exchange forces of tiles on special nodes and sums over nodes; `exchange_checks` follows.
   subroutine exchange_halo(partition, ranks, halo, state, sums)
     type(partition_t), intent(in) :: partition
     type(ranks_t), intent(inout) :: ranks
@@ -96,10 +96,10 @@ contains
 
   contains
 
-    !> Put the piece of a process for all into the halo, or take it out.
+    !> Copy the values of a process for all into the buffer, or out of it.
     subroutine copy_rank_values(rank, puts)
       integer, intent(in) :: rank
-      logical, intent(in) :: puts
+      logical, intent(in) :: puts !! into the buffer
       integer :: at, i
 
       at = halo%starts(rank + 1)
@@ -110,7 +110,7 @@ contains
         at = at + 2*(last - first + 1)
       end associate
       if (.not. allocated(sums%parts)) return
-      ! Those of blocks stand behind those of tiles.
+      ! Sums of blocks follow those of tiles.
       associate (columns => [(i, i=partition%tiles(rank), partition%tiles(rank + 1) - 1), &
         (size(sums%parts, 2) - size(sums%blocks, 2) + i, i=sums%starts(rank + 1), &
         sums%starts(rank + 2) - 1)])
@@ -121,7 +121,7 @@ contains
 
   end subroutine exchange_halo
 
-  !> Some columns of a table into the halo, or out of it.
+  !> Copy some columns of a table into a buffer, or out of it.
   pure subroutine copy_columns(puts, columns, width, table, values)
     logical, intent(in) :: puts
     integer, intent(in) :: columns(:), width
@@ -137,34 +137,35 @@ contains
     end do
   end subroutine copy_columns
 
-  !> What the elements of all have come to, into the last of the checks; what any process tells.
+  !> Reduce the check results of all processes into the last check, and the notices.
   subroutine exchange_checks(partition, elements, ranks, halo, checks, notices)
     type(partition_t), intent(in) :: partition
     type(block_state_t), intent(in) :: elements
     type(ranks_t), intent(inout) :: ranks
     type(halo_t), intent(inout) :: halo
-    type(tile_check_t), intent(inout) :: checks(:) !! of all tiles, and one behind them
-    logical, intent(inout) :: notices(:) !! in: of this process, its elements aside; out: of any
+    type(tile_check_t), intent(inout) :: checks(:) !! of all tiles, and one for all processes
+    logical, intent(inout) :: notices(:) !! in: of this process, without those of elements; out: of
+                                         !! any process
     real(wp) :: values(3 + size(notices))
-    integer :: n_gone
+    integer :: n_removed
 
     associate (first => partition%chunks(ranks%mine), last => partition%chunks(ranks%mine + 1) - 1)
       if (allocated(elements%erosion)) then
-        n_gone = sum(elements%erosion%n_gone(first:last))
-        notices(notice_eroded) = n_gone > halo%n_gone
-        halo%n_gone = n_gone
+        n_removed = sum(elements%erosion%n_removed(first:last))
+        notices(notice_eroded) = n_removed > halo%n_removed
+        halo%n_removed = n_removed
       end if
       if (allocated(elements%n_failed)) then
         notices(notice_failed) = any(elements%n_failed(first:last) /= halo%n_failed)
         halo%n_failed = elements%n_failed(first:last)
       end if
     end associate
-    ! The least of numbers: below zero where it holds of any process.
+    ! Minimum over the processes: below zero where a notice is set by any.
     values(4:) = merge(-1.0_wp, 0.0_wp, notices)
     associate (own => checks(partition%first_tile:partition%last_tile))
       values(1) = minval(own%time_limit)
       values(2) = -maxval(own%volume_change)
-      ! So that the works of all are below the bound where those of each are.
+      ! The total work is below the bound if the works of all processes are below this share.
       values(3) = merge(0.0_wp, -1.0_wp, all(own%has_volume) &
         .and. abs(sum(own%checksum)) <= most_work/(ranks%n + 1))
     end associate
@@ -176,10 +177,10 @@ contains
     halo%joined = halo%joined + ranks%joined
   end subroutine exchange_checks
 
-  !> Pieces of an array of integers, one a process, to all of them, as reals.
+  !> Gather an array of integers, one range per process, in all processes.
   subroutine gather_integers(ranks, starts, values)
     type(ranks_t), intent(inout) :: ranks
-    integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
+    integer, intent(in) :: starts(0:)     !! (0:n) first item of each range, then one beyond
     integer, intent(inout) :: values(:)
     real(wp), allocatable :: copies(:)
 
@@ -188,7 +189,7 @@ contains
     values = nint(copies)
   end subroutine gather_integers
 
-  !> Motion of all nodes that only some processes move, with the velocities that damped runs keep.
+  !> Gather the motion of nodes that single processes move, with the velocities of damped runs.
   subroutine gather_motion(partition, to_all, ranks, state)
     type(partition_t), intent(in) :: partition
     logical, intent(in) :: to_all
@@ -202,7 +203,7 @@ contains
     call gather_reals(ranks, partition%block_nodes, 2, to_all, state%previous_velocity)
   end subroutine gather_motion
 
-  !> The whole state for the first process, or for all.
+  !> Gather the whole state in the first process, or in all.
   subroutine gather_state(partition, to_all, ranks, state)
     type(partition_t), intent(in) :: partition
     logical, intent(in) :: to_all
@@ -220,7 +221,7 @@ contains
     call gather_elements(partition, to_all, ranks, state%elements)
   end subroutine gather_state
 
-  !> What steps change of the elements of each process in turn, piece by piece.
+  !> Gather the element values that steps change, process by process, in messages of limited size.
   subroutine gather_elements(partition, to_all, ranks, elements)
     type(partition_t), intent(in) :: partition
     logical, intent(in) :: to_all
@@ -250,13 +251,13 @@ contains
     end do
   end subroutine gather_elements
 
-  !> What someone asks of this process, for all of them.
+  !> Requests of the user received by this process.
   subroutine collect_requests(state, ratio, monitor, recent, asked, error)
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: ratio            !! last energy ratio known
     type(monitor_t), intent(inout) :: monitor
     type(recent_requests_t), intent(inout) :: recent
-    type(requests_t), intent(inout) :: asked !! last time, and now
+    type(requests_t), intent(inout) :: asked !! previous requests in, new ones out
     type(error_t), allocatable, intent(inout) :: error
     type(requests_t) :: before
 
@@ -269,14 +270,14 @@ contains
     call drop_repeated(before, recent, asked)
   end subroutine collect_requests
 
-  !> A line of the log: what a cycle exchanges, and what files and rare events have besides.
+  !> Log the messages and bytes of a cycle, and those of files and rare events.
   subroutine report_exchange(halo, ranks, log)
     type(halo_t), intent(in) :: halo
     type(ranks_t), intent(inout) :: ranks
     type(log_t), intent(inout) :: log
     integer :: i
     real(wp) :: counts(4, ranks%n), rest(2)
-    character(31) :: figures(10) !! means of four counts, the most of each, and the rest
+    character(31) :: figures(10) !! means of four counts, their maxima, and the rest
 
     rest = real(ranks%joined - halo%joined, wp)
     counts(:, ranks%mine + 1) = real([halo%sent, halo%joined], wp) &
@@ -292,7 +293,7 @@ contains
 
   contains
 
-    !> Of one of the counts, in words.
+    !> Mean and maximum of a count in words.
     function mean_and_most(k) result(text)
       integer, intent(in) :: k
       character(:), allocatable :: text
@@ -303,7 +304,7 @@ contains
   end subroutine report_exchange
 
   !> Forces of the elements of cross sections, before the elements are stepped: each process steps
-  !> its own on a copy, the first one gets all.
+  !> its own on a copy, and the first one gathers them.
   subroutine cut_sections(model, partition, ranks, state)
     type(model_t), intent(in) :: model
     type(partition_t), intent(in) :: partition
@@ -318,7 +319,7 @@ contains
     do i = 1, size(model%controls%output%cross_sections)
       associate (elements => model%controls%output%cross_sections(i)%elements)
         last = first + size(elements) - 1
-        ! Their slots rise.
+        ! Slots are in rising order.
         starts = [(1 + count(model%layout%element_slot(elements) <= (partition%chunks(rank) - 1) &
           *chunk_size), rank=0, ranks%n)]
         call gather_reals(ranks, starts, 8, .false., state%cut_force(:, first:last))

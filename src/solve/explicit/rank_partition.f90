@@ -1,20 +1,18 @@
 ! SPDX-License-Identifier: MIT
-!> Which process of a run has which tiles, and what goes with them: ranges of chunks, nodes and
-!> force slots, since all of these stand tile by tile. Each keeps in memory the special nodes, and
-!> nodes and elements of its own tiles; the first one keeps all, for it writes. Arrays are as long
-!> as the mesh, so that numbers mean the same everywhere, but what belongs to others is not written
-!> to. Special nodes that contact, loads, walls or rigid bodies touch are computed by all processes,
-!> which all hear of them. The others lie between tiles: only the processes whose tiles touch them
-!> sum and move them, and these hear each other's forces on them. To the others such a node is what
-!> an interior node of another process is. The first process has read the deck, resolved and
-!> renumbered; the others get the model from it.
+!> Partition of the tiles among processes, with their chunks, nodes and force slots, all contiguous
+!> by tile. Each process stores the special nodes and the nodes and elements of its own tiles; the
+!> first process stores all, since it writes the files. Arrays have the length of the mesh, so that
+!> numbers mean the same everywhere; memory of remote parts is never touched. Special nodes of
+!> contact, loads, walls and rigid bodies are computed by all processes. Other special nodes are
+!> summed and moved by the processes whose tiles touch them, which exchange forces. The first
+!> process has read and renumbered the model and distributes it.
 module rank_partition_m
   use buffer_transfer_m, only : send_item, all_ranks
   use kinds_m, only : wp
   use layout_m, only : layout_t, chunk_size
   use load_work_m, only : motion_sums_t
   use model_m, only : model_t
-  use remote_state_m, only : remote_t, remote_forgetters, inside_tests_t
+  use remote_state_m, only : remote_t, remote_releases, inside_tests_t
   use packed_buffer_m, only : memory_release_t, packed_buffer_t, part_of
   use ranks_m, only : ranks_t
   use renumber_m, only : mark_moved_nodes
@@ -25,38 +23,39 @@ module rank_partition_m
   public :: partition_t, partition_tiles, release_remote, plan_borders, distribute_model, &
     distribute_start
 
-  !> The first arrays (0:n): where the range of each process starts, then one beyond the last.
+  !> Ranges of each process; the first arrays (0:n): start of each range, then one beyond the last.
   type :: partition_t
     integer, allocatable :: tiles(:), chunks(:)
-    integer, allocatable :: nodes(:)       !! interior
-    integer, allocatable :: special(:)     !! special nodes that its tiles own
+    integer, allocatable :: nodes(:)       !! interior nodes
+    integer, allocatable :: special(:)     !! special nodes owned by its tiles
     integer, allocatable :: force_slots(:)
     integer :: first_tile = 1, last_tile = 0 !! of this process
     ! Borders: force slots that are exchanged, and who moves which nodes.
     integer, allocatable :: runs(:, :)       !! (2, n) special nodes that this process sums and
                                              !! moves: first and last of each run
-    integer, allocatable :: run_tiles(:)     !! (n) the tile that owns those of each run
-    integer, allocatable :: common(:)        !! force slots on nodes that all know, by process
-    integer, allocatable :: common_starts(:) !! (n + 1) where those of each start
-    integer, allocatable :: peers(:)         !! processes with which it has borders
+    integer, allocatable :: run_tiles(:)     !! (n) tile that owns the nodes of each run
+    integer, allocatable :: common(:)        !! force slots on nodes that all processes know, by
+                                             !! process
+    integer, allocatable :: common_starts(:) !! (n + 1) start of those of each process
+    integer, allocatable :: peers(:)         !! processes with shared borders
     integer, allocatable :: out_starts(:), in_starts(:) !! (peers + 1)
-    integer, allocatable :: out_slots(:)     !! force slots of its own that each peer needs
-    integer, allocatable :: in_slots(:)      !! those of each peer that it needs
-    integer, allocatable :: block_nodes(:)   !! (n + 1) special nodes whose sums each forms: where
-                                             !! they start
+    integer, allocatable :: out_slots(:)     !! own force slots that each peer needs
+    integer, allocatable :: in_slots(:)      !! force slots of each peer that this process needs
+    integer, allocatable :: block_nodes(:)   !! (n + 1) start of the special nodes that each process
+                                             !! sums
   end type partition_t
 
-  !> Items of a piece at most.
+  !> Largest number of items in one message.
   integer, parameter :: most_items = 65536
 
-  !> What is handed besides the model.
+  !> Data for the start of the other processes, besides the model.
   type, extends(visited_t) :: start_data_t
-    integer, allocatable :: parts(:)                !! of elements behind surfaces
+    integer, allocatable :: parts(:)                !! of elements at contact surfaces
     integer, allocatable :: corners(:, :)           !! (4, elements) their nodes
-    real(wp), allocatable :: places(:, :)           !! (2, 4 elements) where these are
+    real(wp), allocatable :: positions(:, :)           !! (2, 4 elements) positions of these
     integer, allocatable :: slots(:)                !! of elements of cross sections
     real(wp), allocatable :: mass(:)                !! (n_node) lumped masses
-    real(wp), allocatable :: penalties(:, :)        !! (3, interfaces) as in others_t
+    real(wp), allocatable :: penalties(:, :)        !! (3, interfaces) as in remote_t
     logical, allocatable :: is_inside(:)            !! as in inside_tests_t
   contains
     procedure :: visit => visit_start_data
@@ -64,10 +63,10 @@ module rank_partition_m
 
 contains
 
-  !> Ranges of tiles with about as many elements each; a process may have none.
+  !> Divide the tiles into ranges with about equal numbers of elements; a process may have none.
   pure function partition_tiles(layout, mine, n) result(partition)
     type(layout_t), intent(in) :: layout
-    integer, intent(in) :: mine, n !! number of this process, and how many there are
+    integer, intent(in) :: mine, n !! number of this process, and number of processes
     type(partition_t) :: partition
     real(wp) :: elements(size(layout%tiles)), before, total
     integer :: firsts(size(layout%tiles) + 1), i, owner, last
@@ -100,8 +99,8 @@ contains
     end associate
   end function partition_tiles
 
-  !> Ranges of nodes and slots that other processes have. Nodes inside of rigid bodies stand behind
-  !> those of tiles: all move them.
+  !> Ranges of nodes and slots of other processes. Nodes inside rigid bodies follow those of tiles:
+  !> all processes move them.
   pure function remote_of(model, partition, ranks) result(remote)
     type(model_t), intent(in) :: model
     type(partition_t), intent(in) :: partition
@@ -114,8 +113,8 @@ contains
       (partition%chunks(ranks%mine + 1) - 1)*chunk_size + 1, model%layout%n_slot]
   end function remote_of
 
-  !> Behind the start of a process that is not the first: give up what only others need, tiles of
-  !> others and their interior nodes.
+  !> Release the memory of remote tiles and their interior nodes after the start, except in the
+  !> first process.
   subroutine release_remote(model, ranks, state)
     type(model_t), intent(inout) :: model
     type(ranks_t), intent(in) :: ranks
@@ -126,7 +125,7 @@ contains
     if (ranks%mine == 0 .or. needs_all(model)) return
     deallocate (model%mesh%element_id)
     if (.not. allocated(state%cut_force)) deallocate (model%layout%element_slot)
-    releases = remote_forgetters(remote_of(model, partition_tiles(model%layout, ranks%mine, &
+    releases = remote_releases(remote_of(model, partition_tiles(model%layout, ranks%mine, &
       ranks%n), ranks))
     do k = 1, 2
       call model%visit(releases(k))
@@ -134,7 +133,7 @@ contains
     end do
   end subroutine release_remote
 
-  !> Whether each process looks at all elements during the run.
+  !> Whether each process needs all elements during the run.
   pure function needs_all(model) result(needs)
     type(model_t), intent(in) :: model
     logical :: needs
@@ -143,21 +142,22 @@ contains
       .or. (abs(model%controls%mass_step) > 0.0_wp .and. .not. model%controls%masses_stay)
   end function needs_all
 
-  !> The borders of process `mine`; the sums learn which blocks are its own. One process alone has
-  !> none, and moves all special nodes.
+  !> Plan the borders of process `mine` and its blocks of the sums. A single process has no borders
+  !> and moves all special nodes.
   subroutine plan_borders(model, mine, sums, partition)
     type(model_t), intent(in) :: model
     integer, intent(in) :: mine
     type(motion_sums_t), intent(inout) :: sums
     type(partition_t), intent(inout) :: partition
-    logical, dimension(model%layout%n_special) :: is_common, is_known, knows
+    logical, dimension(model%layout%n_special) :: is_common, is_known, is_known_there
     logical, allocatable :: is_moved(:)
     integer, allocatable :: slots(:)
     integer :: rank, i
 
     is_known = .true.
     if (size(partition%tiles) > 2) then
-      ! All processes know those that anything but elements touches, and nodes without elements.
+      ! All processes know nodes with other forces than those of elements, and nodes without
+      ! elements.
       call mark_moved_nodes(model, is_moved)
       associate (n => model%layout%n_special, starts => model%layout%node_slots)
         is_common = is_moved .or. starts(2:n + 1) == starts(:n)
@@ -178,10 +178,10 @@ contains
           partition%in_slots = [partition%in_slots, pack(slots, is_known(nodes) &
             .and. .not. is_common(nodes))]
         end associate
-        knows = known_nodes(model, partition, sums, rank) .and. .not. is_common
+        is_known_there = known_nodes(model, partition, sums, rank) .and. .not. is_common
         slots = [(i, i=partition%force_slots(mine), partition%force_slots(mine + 1) - 1)]
         partition%out_slots = [partition%out_slots, pack(slots, &
-          knows(model%layout%special_node(slots)))]
+          is_known_there(model%layout%special_node(slots)))]
         associate (n_out => size(partition%out_slots) + 1, n_in => size(partition%in_slots) + 1, &
           n => size(partition%peers) + 1)
           if (n_out == partition%out_starts(n) .and. n_in == partition%in_starts(n)) cycle
@@ -210,8 +210,8 @@ contains
       partition%block_nodes(rank + 2) - 1) = .true.
   end function known_nodes
 
-  !> A block of special nodes is summed by the process that owns its first node, which has to know
-  !> all of it: the sums are those of one process.
+  !> Assign each block of special nodes to the process that owns its first node, which then knows
+  !> all nodes of the block: the sums equal those of a single process.
   pure subroutine assign_blocks(mine, sums, partition)
     integer, intent(in) :: mine
     type(motion_sums_t), intent(inout) :: sums
@@ -232,7 +232,7 @@ contains
     sums%last = starts(mine + 2) - 1
   end subroutine assign_blocks
 
-  !> Runs of known nodes, none beyond those of one tile.
+  !> List the runs of known nodes, each within the nodes of one tile.
   pure subroutine list_runs(model, is_known, partition)
     type(model_t), intent(in) :: model
     logical, intent(in) :: is_known(:)
@@ -254,21 +254,21 @@ contains
     partition%runs(2, :) = pack([(i, i=1, n)], owner(1:n) > 0 .and. owner(1:n) /= owner(2:))
   end subroutine list_runs
 
-  !> Its components.
+  !> Visit the components.
   subroutine visit_start_data(self, visitor)
     class(start_data_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
 
     call visitor%visit('parts', self%parts)
     call visitor%visit('corners', self%corners)
-    call visitor%visit('places', self%places)
+    call visitor%visit('positions', self%positions)
     call visitor%visit('slots', self%slots)
     call visitor%visit('mass', self%mass, of_nodes)
     call visitor%visit('penalties', self%penalties)
     call visitor%visit('is_inside', self%is_inside)
   end subroutine visit_start_data
 
-  !> The model of the first process for all.
+  !> Distribute the model of the first process.
   subroutine distribute_model(ranks, model, has_all)
     type(ranks_t), intent(inout) :: ranks
     type(model_t), intent(inout) :: model
@@ -282,7 +282,7 @@ contains
     if (ranks%n == 1) return
     call send_item(ranks, all_ranks, buffer, model)
     deallocate (buffer%values)
-    ! Where each process looks at the state of all elements at the start, or steps them in dynamic
+    ! Each process needs all elements at the start for mass scaling, stiffness damping or dynamic
     ! relaxation.
     has_all = needs_all(model) .or. model%controls%relaxation%is_on &
       .or. abs(model%controls%mass_step) > 0.0_wp &
@@ -299,7 +299,7 @@ contains
       call broadcast_faces(ranks, model)
     end if
     if (has_all .or. ranks%mine == 0) return
-    ! Of fixed degrees of freedom each process keeps those of the nodes that it has.
+    ! Each process keeps the fixed degrees of freedom of its own nodes.
     associate (nodes => model%conditions%fixed_nodes, starts => partition%nodes)
       is_known = nodes <= model%layout%n_special .or. nodes >= starts(ranks%n) &
         .or. (nodes >= starts(ranks%mine) .and. nodes < starts(ranks%mine + 1))
@@ -308,12 +308,12 @@ contains
     model%conditions%fixed_nodes = pack(model%conditions%fixed_nodes, is_known)
   end subroutine distribute_model
 
-  !> Single elements that all have to know: those behind contact surfaces with their nodes, and
-  !> where those of cross sections stand.
+  !> Broadcast single elements that all processes need: those at contact surfaces with their nodes,
+  !> and the slots of those in cross sections.
   subroutine broadcast_faces(ranks, model)
     type(ranks_t), intent(inout) :: ranks
     type(model_t), intent(inout) :: model
-    type(start_data_t) :: handed
+    type(start_data_t) :: item
     type(packed_buffer_t) :: buffer
     integer, allocatable :: elements(:), cut(:)
     integer :: i, k
@@ -330,63 +330,63 @@ contains
     end if
     associate (mesh => model%mesh, layout => model%layout)
       if (ranks%mine == 0) then
-        handed%parts = mesh%element_part(elements)
-        handed%corners = mesh%element_nodes(:, elements)
-        handed%places = mesh%coordinates(:, [handed%corners])
-        handed%slots = layout%element_slot(cut)
+        item%parts = mesh%element_part(elements)
+        item%corners = mesh%element_nodes(:, elements)
+        item%positions = mesh%coordinates(:, [item%corners])
+        item%slots = layout%element_slot(cut)
       end if
-      call send_item(ranks, all_ranks, buffer, handed)
+      call send_item(ranks, all_ranks, buffer, item)
       if (ranks%mine == 0) return
       do i = 1, size(elements)
-        mesh%element_part(elements(i)) = handed%parts(i)
-        mesh%element_nodes(:, elements(i)) = handed%corners(:, i)
+        mesh%element_part(elements(i)) = item%parts(i)
+        mesh%element_nodes(:, elements(i)) = item%corners(:, i)
         do k = 1, 4
-          mesh%coordinates(:, handed%corners(k, i)) = handed%places(:, 4*(i - 1) + k)
+          mesh%coordinates(:, item%corners(k, i)) = item%positions(:, 4*(i - 1) + k)
         end do
       end do
       do i = 1, size(cut)
-        layout%element_slot(cut(i)) = handed%slots(i)
+        layout%element_slot(cut(i)) = item%slots(i)
       end do
     end associate
   end subroutine broadcast_faces
 
-  !> What a process that starts its own share alone has to know of the state of the first one.
+  !> Distribute the data that other processes need to start their own part of the state.
   subroutine distribute_start(model, ranks, state, remote, inside_tests)
     type(model_t), intent(in) :: model
     type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state              !! of the first process
-    type(remote_t), allocatable, intent(out) :: remote !! left alone
-    type(inside_tests_t), allocatable, intent(inout) :: inside_tests !! to the first process; then
-                                                                !! from it
+    type(remote_t), allocatable, intent(out) :: remote !! not allocated in the first process
+    type(inside_tests_t), allocatable, intent(inout) :: inside_tests !! in the first process in, in
+                                                                     !! the others out
     type(packed_buffer_t) :: buffer
-    type(start_data_t) :: handed
+    type(start_data_t) :: item
     type(partition_t) :: partition
     integer :: i
 
     if (ranks%mine == 0) then
-      call move_alloc(state%mass, handed%mass)
-      handed%penalties = reshape([(state%contacts(i)%slave_penalty, &
+      call move_alloc(state%mass, item%mass)
+      item%penalties = reshape([(state%contacts(i)%slave_penalty, &
         state%contacts(i)%master_penalty, state%contacts(i)%node_penalty, &
         i=1, size(state%contacts))], [3, size(state%contacts)])
-      if (allocated(inside_tests%is_inside)) handed%is_inside = inside_tests%is_inside
+      if (allocated(inside_tests%is_inside)) item%is_inside = inside_tests%is_inside
     end if
-    call send_item(ranks, all_ranks, buffer, handed)
+    call send_item(ranks, all_ranks, buffer, item)
     partition = partition_tiles(model%layout, ranks%mine, ranks%n)
-    call distribute_partition(ranks, of_nodes, partition, model%mesh%n_node, handed)
+    call distribute_partition(ranks, of_nodes, partition, model%mesh%n_node, item)
     if (ranks%mine == 0) then
-      call move_alloc(handed%mass, state%mass)
+      call move_alloc(item%mass, state%mass)
       return
     end if
     allocate (remote, source=remote_of(model, partition, ranks))
-    call move_alloc(handed%mass, remote%mass)
-    call move_alloc(handed%penalties, remote%penalties)
+    call move_alloc(item%mass, remote%mass)
+    call move_alloc(item%penalties, remote%penalties)
     allocate (inside_tests)
     inside_tests%are_given = .true.
-    if (allocated(handed%is_inside)) call move_alloc(handed%is_inside, inside_tests%is_inside)
+    if (allocated(item%is_inside)) call move_alloc(item%is_inside, inside_tests%is_inside)
   end subroutine distribute_start
 
-  !> What all have to know, and then to each process what is of its tiles. Nodes inside of rigid
-  !> bodies stand behind those of tiles: all move them.
+  !> Broadcast the data that all processes need, then send each process the data of its tiles. Nodes
+  !> inside rigid bodies follow those of tiles: all processes move them.
   subroutine distribute_partition(ranks, of, partition, n_node, item)
     type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: of         !! of_nodes or of_slots
@@ -407,10 +407,10 @@ contains
     end do
   end subroutine distribute_partition
 
-  !> A range of what an item has, piece by piece.
+  !> Send a range of an item in messages of limited size.
   subroutine send_range(ranks, receiver, of, range, item)
     type(ranks_t), intent(inout) :: ranks
-    integer, intent(in) :: receiver   !! `all_ranks` or one of the others
+    integer, intent(in) :: receiver   !! `all_ranks` or the number of one process
     integer, intent(in) :: of         !! one of the `of_` constants
     integer, intent(in) :: range(2)
     class(visited_t), intent(inout) :: item

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Dynamic relaxation (*CONTROL_DYNAMIC_RELAXATION): before time zero the loads of that phase act on
-!> the body, and every step leaves a share of the velocities, until the body rests. What it has come
-!> to is the state at time zero. One thread, before any output.
+!> the structure, and every step scales the velocities, until the structure is at rest. The result
+!> is the state at time zero. One thread, before any output.
 module relaxation_m
   use clock_m, only : lap, phase_input
   use load_work_m, only : apply_loads, motion_sums_t
@@ -23,23 +23,22 @@ module relaxation_m
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use loads_m, only : scaled_step
-  use held_nodes_m, only : hold_skew_nodes
+  use node_constraints_m, only : apply_skew_supports
   use time_step_m, only : volume_step
   implicit none
   private
   public :: relax, switch_loads
 
-  !> Cycles after which relaxation is given up where DRTERM does not end it.
+  !> Cycles after which relaxation stops where DRTERM does not end it.
   integer, parameter :: most_cycles = 5000000
-  !> By how much the limit of the step must rise before the step does.
+  !> Relative rise of the step limit below which the step stays.
   real(wp), parameter :: least_rise = 0.05_wp
-  !> Cycles between two looks for what someone asks for.
+  !> Cycles between two polls for requests.
   integer, parameter :: poll_cycles = 8
 
 contains
 
-  !> From the state that the deck describes, or that a restart file of this phase holds, to the one
-  !> at rest, which becomes that of time zero.
+  !> Relax the initial state, or a state of this phase from a restart file, to rest.
   subroutine relax(model, monitor, state, error)
     type(model_t), intent(in) :: model
     type(monitor_t), intent(inout) :: monitor
@@ -49,7 +48,7 @@ contains
     type(requests_t) :: asked
     type(recent_requests_t) :: recent
     real(wp), allocatable :: force(:, :)
-    real(wp) :: share !! of the largest kinetic energy
+    real(wp) :: share !! kinetic energy over its maximum
     real(wp) :: momentum(2), mass
     integer :: n, i
 
@@ -63,11 +62,11 @@ contains
     end if
     allocate (force(2, model%layout%n_local))
     share = 1.0_wp
-    ! The first step follows from the elements at time zero: a cycle that moves nothing.
-    if (.not. state%dt > 0.0_wp) call relax_once(relaxing, force, state)
+    ! A cycle without motion gives the step limit of the elements at time zero.
+    if (.not. state%dt > 0.0_wp) call relax_cycle(relaxing, force, state)
     associate (rules => model%controls%relaxation)
       do n = state%relaxation%n + 1, most_cycles
-        call relax_once(relaxing, force, state)
+        call relax_cycle(relaxing, force, state)
         if (mod(n, 100) == 0 .or. mod(n, rules%check_cycles) == 0) &
           call check_elements(relaxing, state, error)
         if (allocated(error)) return
@@ -90,23 +89,23 @@ contains
         if (allocated(error)) return
       end do
       if (n > most_cycles) then
-        call raise(error, 'dynamic relaxation does not come to rest in '//to_text(most_cycles) &
-          //' cycles: its kinetic energy is '//to_text(share)//' of the largest', status_run)
+        call raise(error, 'dynamic relaxation has not converged in '//to_text(most_cycles) &
+          //' cycles: the kinetic energy is '//to_text(share)//' of its maximum', status_run)
         return
       end if
       call write_log(monitor%log, 'dynamic relaxation: '//to_text(n)//' cycles, kinetic energy ' &
-        //to_text(share)//' of its largest at the end')
+        //to_text(share)//' of its maximum at the end')
       if (.not. share < rules%tolerance) call warn(monitor%log, 'dynamic relaxation ended by ' &
         //'DRTERM before it converged')
     end associate
-    call begin_at_zero(model, state%relaxation%velocity, state)
+    call start_run_state(model, state%relaxation%velocity, state)
     state%relaxation = relaxation_state_t()
   end subroutine relax
 
-  !> Do what someone asks for: a restart file, from which the phase goes on, and an end, which is
-  !> told as an error. The plot state that may be asked for is that of time zero.
+  !> Serve requests: a restart file, from which the phase can restart, and a stop, which is returned
+  !> as an error. A requested plot state is that of time zero.
   subroutine apply_requests(asked, recent, state, monitor, error)
-    type(requests_t), intent(inout) :: asked !! last time, and now
+    type(requests_t), intent(inout) :: asked !! previous requests in, new ones out
     type(recent_requests_t), intent(inout) :: recent
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -116,7 +115,7 @@ contains
 
     call lap(monitor%clock, phase_input)
     call collect_requests(state, 1.0_wp, monitor, recent, asked, error)
-    ! What one process is asked for is done by all.
+    ! A request to one process is served by all.
     none = merge(0.0_wp, 1.0_wp, [asked%dump, asked%stop, asked%signalled])
     call reduce_min(monitor%ranks, none)
     asked%dump = none(1) < 1.0_wp
@@ -124,7 +123,7 @@ contains
     asked%signalled = none(3) < 1.0_wp
     wanted = wanted_files(monitor%restarts, 0, asked%dump, .false., asked%signalled)
     if (any(wanted)) then
-      ! In restart files the run stands at time zero.
+      ! In restart files the run is at time zero.
       state%relaxation%time = state%time
       state%time = 0.0_wp
       if (monitor%ranks%mine == 0 .and. .not. allocated(error)) &
@@ -139,7 +138,7 @@ contains
   end subroutine apply_requests
 
   !> One cycle of relaxation, v(n+1/2) = DRFCTR v(n-1/2) + h a, and the step of the next one.
-  subroutine relax_once(model, force, state)
+  subroutine relax_cycle(model, force, state)
     type(model_t), intent(in) :: model
     real(wp), intent(inout), contiguous :: force(:, :) !! work array of a tile
     type(state_t), intent(inout) :: state
@@ -165,22 +164,23 @@ contains
     end do
     associate (n => model%layout%n_special)
       call sum_special_forces(model%layout, state%force_slots, 1, n, state%internal_force)
-      if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, leap, 1, n, state)
+      if (allocated(model%conditions%skew_supports)) call apply_skew_supports(model, leap, 1, n, &
+        state)
       call move_special_nodes(leap, 1, n, state)
     end associate
     state%time = state%time + state%dt
     state%dt_before = state%dt
-    ! TSSFDR, or what the run takes, times the limit; held while that rises by little.
+    ! TSSFDR, or the factor of the run, times the limit; constant while the limit rises by little.
     limit = min(minval(state%elements%time_limit), volume_step(state%dt, state%dt, &
       maxval(state%elements%volume_change)))
     wanted = scaled_step(model, limit, 0.0_wp)
     if (model%controls%relaxation%step_scale > 0.0_wp) &
       wanted = model%controls%relaxation%step_scale*limit
     if (wanted < state%dt .or. wanted > (1.0_wp + least_rise)*state%dt) state%dt = wanted
-  end subroutine relax_once
+  end subroutine relax_cycle
 
-  !> The clock and the account of the run begin; velocities are those that the deck gives.
-  subroutine begin_at_zero(model, velocity, state)
+  !> Reset time, works and damping for the start of the run; velocities are those of the deck.
+  subroutine start_run_state(model, velocity, state)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: velocity(:, :) !! (2, n_node)
     type(state_t), intent(inout) :: state
@@ -195,7 +195,7 @@ contains
     state%damping_work = 0.0_wp
     state%body_acceleration = 0.0_wp
     state%elements%viscous_work = 0.0_wp
-    ! What viscous hourglass control has taken is gone; that of the other forms is stored.
+    ! Work of viscous hourglass control is dissipated; that of the other forms is stored.
     do i = 1, size(state%elements%hourglass_work)
       if (model%parts(model%layout%chunk_part(i))%hourglass%form /= hourglass_viscous) cycle
       state%elements%hourglass_work(i) = 0.0_wp
@@ -205,9 +205,9 @@ contains
     if (allocated(state%external)) state%external = 0.0_wp
     if (allocated(state%elements%damping_work)) state%elements%damping_work = 0.0_wp
     if (allocated(state%elements%damping_stress)) state%elements%damping_stress = 0.0_wp
-  end subroutine begin_at_zero
+  end subroutine start_run_state
 
-  !> Switch off the loads whose curves are of one phase alone.
+  !> Switch off the loads whose curves belong to one phase alone.
   subroutine switch_loads(model, phase)
     type(model_t), intent(inout) :: model
     integer, intent(in) :: phase !! SIDR 0 of the run, 1 of relaxation

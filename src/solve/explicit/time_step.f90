@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> The time step: TSSFAC times the smallest L/c of the elements (or what contact springs
-!> leave of it), capped by a curve; constant where the curve is constant and lies below the
-!> stable step. Where the elements or springs rule it falls at once and rises by a twentieth at
-!> least; where the curve rules it follows the curve. The limit of one cycle rules
-!> the step of the next, so that a cycle need not wait for its own elements.
+!> Time step: TSSFAC times the smallest L/c of the elements (or the limit of contact springs),
+!> capped by a curve; constant where the curve is constant and below the stable step. Where elements
+!> or springs limit the step it falls at once and rises by a twentieth at least; where the curve
+!> limits it, it follows the curve. The limit of a cycle applies to the next step, so that a cycle
+!> need not wait for its own elements.
 module time_step_m
   use block_state_m, only : block_state_t
   use loads_m, only : is_active, scaled_step
@@ -26,33 +26,34 @@ module time_step_m
   implicit none
   private
   public :: step_plan_t, first_step, largest_change, volume_step, next_step, &
-    is_last, cycles_in, obey_approach, obey_defaults, follow_springs, has_springs, first_change
+    is_last, cycles_in, limit_approach, limit_default_penalties, update_spring_bounds, &
+    has_springs, first_volume_change
 
-  !> What a step must be allowed to rise by before it does.
+  !> Relative rise of the limit below which the step stays.
   real(wp), parameter :: least_rise = 0.05_wp
 
-  !> Change of ln V of an element in a step beyond which the next step is shorter.
+  !> Change of ln V of an element in a step above which the next step is shorter.
   real(wp), parameter :: largest_change = 0.1_wp
 
-  !> Part of the depth of a first contact by which bodies may come nearer in a step.
+  !> Share of the search radius of a first contact by which bodies may approach in a step.
   real(wp), parameter :: approach_share = 0.8_wp
 
-  !> Cycles between two looks at the lengths that contact springs stand for.
+  !> Cycles between two updates of the spring bounds.
   integer, parameter :: refresh_interval = 20
 
-  !> How the steps go on.
+  !> Control of the time step.
   type, extends(visited_t) :: step_plan_t
-    real(wp) :: first_dt = 0.0_wp    !! first step, the measure of the floor
-    real(wp) :: constant = 0.0_wp    !! the constant step while it holds, else 0
-    real(wp) :: start_time = 0.0_wp  !! time at `start_cycle`, from where the constant step counts
+    real(wp) :: first_dt = 0.0_wp    !! first step, reference of the floor
+    real(wp) :: constant = 0.0_wp    !! constant step while it holds, else 0
+    real(wp) :: start_time = 0.0_wp  !! time at `start_cycle`, origin of the constant steps
     integer :: start_cycle = 0
     integer :: n_cycle = 0           !! cycles to the end at the constant step
     integer :: end_cycle = 0         !! ENDCYC, 0 = none
     real(wp) :: end_time = 0.0_wp
-    logical :: warned = .false.      !! the cap has been found above the stable step
-    logical :: warned_approach = .false. !! bodies have been found to approach too fast for it
-    type(spring_bound_t), allocatable :: springs(:) !! that the step must respect; none unless ECDT
-                                                    !! = 2, or there are ties or default
+    logical :: warned = .false.      !! the curve has exceeded the stable step
+    logical :: warned_approach = .false. !! bodies have approached too fast for the step
+    type(spring_bound_t), allocatable :: springs(:) !! bounds of the springs that limit the step;
+                                                    !! allocated for ECDT = 2, ties, or default
                                                     !! penalties that need it
   contains
     procedure :: visit => visit_steps
@@ -60,7 +61,7 @@ module time_step_m
 
 contains
 
-  !> The first step, from the elements at time zero.
+  !> First step from the elements at time zero.
   subroutine first_step(model, elements, log, steps, dt, error)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -93,13 +94,13 @@ contains
       //'springs '//to_text(limit))
   end subroutine first_step
 
-  !> Step in which ln V of an element changes by no more than it should, from the change in an
-  !> earlier step `dt`, since which a time `since` has passed. At a constant rate that is
-  !> `largest_change`. A rate that grows as from rest, a t, is a dt/2 in the earlier step and
-  !> a (dt + since + step/2) in this one: that changes V by at most five times as much.
+  !> Step in which ln V of an element changes by at most the admissible amount, from its change in
+  !> an earlier step `dt`, since which a time `since` has passed. At a constant rate that is
+  !> `largest_change`. A rate that grows from rest, a t, is a dt/2 in the earlier step and a (dt +
+  !> since + step/2) in this one: that changes V by at most five times as much.
   pure function volume_step(dt, since, change) result(step)
     real(wp), intent(in) :: dt      !! s
-    real(wp), intent(in) :: since   !! s, one step or none
+    real(wp), intent(in) :: since   !! one step or none, s
     real(wp), intent(in) :: change  !! of ln V, without its sign
     real(wp) :: step
     real(wp) :: passed
@@ -110,11 +111,11 @@ contains
     step = sqrt(passed**2 + dt*(dt + 2.0_wp*passed)*(largest_change/change)) - passed
   end function volume_step
 
-  !> Lower a step in which bodies would come deeper into each other than a first contact may be. One
-  !> that the deck sets (by a curve or scaled masses that rule it) stays, and the log warns once.
-  subroutine obey_approach(model, dt, state, log, steps, limit)
+  !> Limit a step in which bodies would approach by more than the search radius of a first contact.
+  !> A step set by the deck (curve or mass scaling) stays, and the log warns once.
+  subroutine limit_approach(model, dt, state, log, steps, limit)
     type(model_t), intent(in) :: model
-    real(wp), intent(in) :: dt              !! step in which the interfaces have last moved, s
+    real(wp), intent(in) :: dt              !! step in which the interfaces last moved, s
     type(state_t), intent(in) :: state
     type(log_t), intent(inout) :: log
     type(step_plan_t), intent(inout) :: steps
@@ -135,14 +136,14 @@ contains
       limit = min(limit, allowed)
     else if (allowed < state%dt .and. .not. steps%warned_approach) then
       call warn(log, 'interface '//to_text(model%contacts(minloc(steps_of, 1))%id)//': at time ' &
-        //to_text(state%time)//' bodies come deeper into each other in a step than a first ' &
-        //'contact may be, and may pass each other unseen; a step of at most '//to_text(allowed) &
-        //' avoids that')
+        //to_text(state%time)//' bodies approach in a step by more than the search radius of a ' &
+        //'first contact, and may pass through each other; use a step of at most ' &
+        //to_text(allowed))
       steps%warned_approach = .true.
     end if
-  end subroutine obey_approach
+  end subroutine limit_approach
 
-  !> Constant steps `dt` in a time, at least one and no more than can be counted.
+  !> Number of constant steps `dt` in a time, at least one.
   pure function cycles_in(time, dt) result(n)
     real(wp), intent(in) :: time, dt !! s
     integer :: n
@@ -151,7 +152,8 @@ contains
     if (time < 0.5_wp*huge(n)*dt) n = max(1, nint(time/dt))
   end function cycles_in
 
-  !> Step at `time` from the elements' limit; warns once when the cap is above the stable step.
+  !> Step at `time` from the limit of the elements; warns once when the curve exceeds the stable
+  !> step.
   function choose_step(model, limit, time, log, steps) result(dt)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: limit, time
@@ -165,23 +167,22 @@ contains
     if (cap > limit .and. .not. steps%warned &
       .and. curve_is_constant(model%curves(model%controls%dt_curve))) then
       call warn(log, 'the constant time step '//to_text(cap)//' at time '//to_text(time) &
-        //' lies above the stable step '//to_text(limit)//' of the elements' &
+        //' exceeds the stable step '//to_text(limit)//' of the elements' &
         //trim(merge(' and contact springs', '                    ', allocated(steps%springs))) &
         //'; using TSSFAC times the stable step while it does')
       steps%warned = .true.
     end if
   end function choose_step
 
-  !> Time of cycle `cycle` and the step that leads away from it. A constant
-  !> step counts time as n dt.
+  !> Time of cycle `cycle` and the next step. Constant steps give the time as n dt.
   subroutine next_step(model, element_limit, log, cycle, steps, time, dt)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: element_limit     !! smallest L/c
     type(log_t), intent(inout) :: log
     integer, intent(in) :: cycle              !! number of the new cycle
     type(step_plan_t), intent(inout) :: steps
-    real(wp), intent(inout) :: time           !! in: old, out: new
-    real(wp), intent(inout) :: dt             !! in: step that led here, out: next one
+    real(wp), intent(inout) :: time           !! old in, new out
+    real(wp), intent(inout) :: dt             !! previous step in, next one out
     real(wp) :: limit, wanted, before
     logical :: changes
 
@@ -194,10 +195,10 @@ contains
     limit = element_limit
     if (allocated(steps%springs)) limit = minval([limit, stable_step(limit, steps%springs)])
     wanted = choose_step(model, limit, time, log, steps)
-    ! Leap-frog keeps energy without a trend only while its step is constant; the limits of elements
-    ! and springs beat with the vibrations of a body, and a step that follows them feeds those
-    ! (doc/theory/time_integration.md). So a step that a limit has set is held, whatever curve lies
-    ! above; one that a curve has set follows it.
+    ! Leap-frog conserves energy without drift only at a constant step: limits of elements and
+    ! springs oscillate with the vibrations of a body, and a step that follows them feeds energy
+    ! into these (doc/theory/time_integration.md). So a step set by a limit is held, one set by a
+    ! curve follows it.
     changes = wanted < dt .or. wanted > (1.0_wp + least_rise)*dt
     if (.not. changes .and. model%controls%dt_curve > 0) &
       changes = dt >= curve_value(model%curves(model%controls%dt_curve), before)
@@ -205,8 +206,8 @@ contains
     if (steps%warned) steps%constant = 0.0_wp
   end subroutine next_step
 
-  !> Whether the cycle at `time` is the last: nint(ENDTIM/dt) cycles of a constant step, otherwise
-  !> the first cycle at or after the end time.
+  !> Whether the cycle at `time` is the last: after nint(ENDTIM/dt) constant steps, else the first
+  !> cycle at or after the end time.
   pure function is_last(steps, cycle, time) result(last)
     type(step_plan_t), intent(in) :: steps
     integer, intent(in) :: cycle
@@ -221,10 +222,10 @@ contains
     if (steps%end_cycle > 0) last = last .or. cycle >= steps%end_cycle
   end function is_last
 
-  !> At time zero: where penalty and step are both left to the program (SFACT or PEN, SLSFAC, LCTM
-  !> and ECDT at their defaults) and the springs ask for less than TSSFAC times the step of the
-  !> elements, by more than their bound may be too low, the step obeys them from then on.
-  pure subroutine obey_defaults(model, state)
+  !> At time zero let the step follow the springs of interfaces whose penalty and step have their
+  !> defaults (SFACT or PEN, SLSFAC, LCTM, ECDT), if the springs need less than TSSFAC times the
+  !> step of the elements by more than the uncertainty of their bound.
+  pure subroutine limit_default_penalties(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     logical, dimension(size(model%contacts)) :: is_default, counts
@@ -243,12 +244,11 @@ contains
     call bound_springs(model%contacts, state%contact_mass, state%contacts, &
       merge(1.0_wp, 0.0_wp, counts), bounds)
     state%contacts%rules_step = is_default .and. sharpness*dt > stable_step(limit, bounds)
-  end subroutine obey_defaults
+  end subroutine limit_default_penalties
 
-  !> Step in which nothing comes deeper than a first contact may be, from the relative motion in a
-  !> step `dt`; huge where that is slow, and where the deck says what counts as a first contact
-  !> (ties, a depth of its own). Searches are no part of it: they depend on when the last one
-  !> was.
+  !> Step in which bodies approach by at most the search radius of a first contact, from the
+  !> relative motion in a step `dt`; huge where that is slow, and for ties and a search radius of
+  !> the deck.
   pure function approach_step(contact, memory, dt) result(limit)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -263,10 +263,9 @@ contains
     if (memory%advance > 0.01_wp*depth) limit = dt*(depth/memory%advance)
   end function approach_step
 
-  !> Where ECDT = 2 asks for it, and for ties unless ECDT = 1: find now and then what the springs at
-  !> the present places demand of the steps to come. So do default penalties that ask for a
-  !> smaller step.
-  pure subroutine follow_springs(model, state, bounds)
+  !> Update the step bounds of the springs every `refresh_interval` cycles: for ECDT = 2, for ties
+  !> unless ECDT = 1, and for default penalties that need a smaller step.
+  pure subroutine update_spring_bounds(model, state, bounds)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(spring_bound_t), allocatable, intent(inout) :: bounds(:)
@@ -281,9 +280,9 @@ contains
     call bound_springs(state%outlines, state%contact_mass, state%contacts, &
       merge(1.0_wp, 0.0_wp, counts), bounds)
     where (.not. counts) bounds%rate = 0.0_wp
-  end subroutine follow_springs
+  end subroutine update_spring_bounds
 
-  !> Whether the step follows springs of interfaces.
+  !> Whether springs of interfaces limit the step.
   pure function has_springs(model, memories) result(has)
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(in) :: memories(:) !! of its interfaces
@@ -293,7 +292,7 @@ contains
       .and. model%controls%contact_step /= contact_step_free) .or. any(memories%rules_step)
   end function has_springs
 
-  !> Its components.
+  !> Visit the components of the step control.
   subroutine visit_steps(self, visitor)
     class(step_plan_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -314,9 +313,9 @@ contains
     call visitor%each('springs', self%springs)
   end subroutine visit_steps
 
-  !> Largest change of ln V of an element, without its sign, in a step from time zero, with the
-  !> forces that stand in the state. Rigid walls and forces of implicit penalties do not count.
-  subroutine first_change(model, partition, leap, velocity, state, ranks, change)
+  !> Largest |change of ln V| of an element in a step from time zero by the forces in the state.
+  !> Rigid walls and implicit penalties are left out.
+  subroutine first_volume_change(model, partition, leap, velocity, state, ranks, change)
     type(model_t), intent(in) :: model
     type(partition_t), intent(in) :: partition
     type(leap_t), intent(in) :: leap
@@ -328,7 +327,7 @@ contains
     real(wp) :: least(1), push(2), x31(2), x42(2), v31(2), v42(2), rate
     integer :: i, i_tile, i_chunk, slot
 
-    ! v(1/2) of the nodes whose forces this process knows.
+    ! v(1/2) of the nodes of this process.
     allocate (next(2, size(state%motion, 2)))
     do i = 1, size(next, 2)
       push = -state%internal_force(:, i)
@@ -365,6 +364,6 @@ contains
     least = -change
     if (ranks%n > 1) call reduce_min(ranks, least)
     change = -least(1)
-  end subroutine first_change
+  end subroutine first_volume_change
 
 end module time_step_m

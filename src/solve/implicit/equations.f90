@@ -1,8 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Equations of the implicit driver: free degrees of freedom first, then those with a prescribed
-!> motion; fixed ones, and nodes that no element has, get none. And what the curves ask of the
-!> prescribed ones over one step: displacement, velocity and acceleration (doc/theory/implicit.md,
-!> section 1).
+!> Equations of the implicit driver: free degrees of freedom first, then prescribed ones; fixed ones
+!> and nodes without elements have none. Prescribed displacement, velocity and acceleration over one
+!> step (doc/theory/implicit.md, section 1).
 module equations_m
   use conditions_m, only : prescribed_motion_t, motion_velocity, motion_acceleration, &
     motion_displacement
@@ -20,31 +19,31 @@ module equations_m
   !> Numbering for one step.
   type :: equations_t
     integer :: n_free = 0
-    integer :: n = 0                        !! with the prescribed ones
+    integer :: n = 0                        !! free and prescribed ones
     integer, allocatable :: number(:, :)    !! (2, n_node), 0 = none
-    integer, allocatable :: motion_of(:)    !! (n - n_free) which prescribed motion
+    integer, allocatable :: motion_of(:)    !! (n - n_free) index of the prescribed motion
   end type equations_t
 
-  !> Part of a step below which two times are the same.
+  !> Share of a step below which two times are equal.
   real(wp), parameter :: same_time = 1.0e-6_wp
 
-  !> Change of slope that makes a corner of a curve, as a part of the steeper side.
+  !> Change of slope of a corner of a curve, as a share of the steeper side.
   real(wp), parameter :: corner = 0.5_wp
-  !> Plot states for which steps end.
+  !> Largest number of plot states for which steps are cut.
   real(wp), parameter :: most_plots = 1.0e4_wp
 
-  !> The prescribed degrees of freedom of one step, in the order of their equations.
+  !> Prescribed degrees of freedom of one step, in the order of their equations.
   type :: prescribed_step_t
     real(wp), allocatable :: increment(:)    !! u(n+1) - u(n)
     real(wp), allocatable :: velocity(:)     !! v(n+1)
     real(wp), allocatable :: acceleration(:) !! a(n+1)
-    real(wp), allocatable :: mean(:)         !! (v(n+1) - v(n))/dt, which the inertia of the step
-                                             !! feels
+    real(wp), allocatable :: mean(:)         !! (v(n+1) - v(n))/dt, for the inertia force of the
+                                             !! step
   end type prescribed_step_t
 
 contains
 
-  !> Number the equations for a step; `time` lies inside it (no motion is born or dies there).
+  !> Number the equations of a step; `time` lies inside it (no motion starts or ends there).
   pure subroutine number_equations(model, state, time, equations)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -76,8 +75,8 @@ contains
     end associate
   end subroutine number_equations
 
-  !> Move prescribed columns of the collected matrix to the right-hand side: b(free) -= K(free,
-  !> prescribed) * increments. What is left in the matrix are the free rows and columns.
+  !> Move prescribed columns of the matrix to the right-hand side: b(free) -= K(free, prescribed) *
+  !> increments. The matrix keeps the free rows and columns.
   pure subroutine move_prescribed(n_free, increments, matrix, b)
     integer, intent(in) :: n_free
     real(wp), intent(in) :: increments(:)
@@ -102,7 +101,7 @@ contains
     matrix%n = n_free
   end subroutine move_prescribed
 
-  !> The free entries of a nodal field.
+  !> Free entries of a nodal field.
   pure function free_entries(equations, field) result(vector)
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: field(:, :) !! (2, n_node)
@@ -111,7 +110,7 @@ contains
     vector = pack(field, equations%number > 0 .and. equations%number <= equations%n_free)
   end function free_entries
 
-  !> What the curves ask for from `state` to `time`. No motion is born or dies inside the step.
+  !> Prescribed motion from `state` to `time`. No motion starts or ends inside the step.
   pure subroutine prescribe_step(model, state, time, equations, prescribed)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -138,8 +137,8 @@ contains
     end do
   end subroutine prescribe_step
 
-  !> Velocity and acceleration at time zero: motions that hold from the start are under way.
-  !> (Velocity curves have set theirs already.)
+  !> Velocity and acceleration of prescribed motions at time zero. (Velocity curves have set their
+  !> velocity before.)
   pure subroutine prescribe_start(model, dt, state)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: dt !! first step
@@ -165,33 +164,32 @@ contains
     end do
   end subroutine prescribe_start
 
-  !> Displacement of the step, velocity and acceleration at its end. Velocities and
-  !> accelerations given by a curve are integrated exactly; what must be differentiated is
-  !> differenced over a step to both sides.
+  !> Displacement over the step, velocity and acceleration at its end. Velocity and acceleration
+  !> curves are integrated exactly; derivatives are central differences over a step.
   pure function follow_curve(model, motion, times, displacement, velocity) result(path)
     type(model_t), intent(in) :: model
     type(prescribed_motion_t), intent(in) :: motion
     real(wp), intent(in) :: times(2)               !! start and end of the step
-    real(wp), intent(in) :: displacement, velocity !! at its start
+    real(wp), intent(in) :: displacement, velocity !! at the start of the step
     real(wp) :: path(3)
-    real(wp) :: dt, life(2)
+    real(wp) :: dt, active_times(2)
 
     dt = times(2) - times(1)
-    life = [max(motion%birth, 0.0_wp), min(motion%death, model%controls%end_time)]
+    active_times = [max(motion%birth, 0.0_wp), min(motion%death, model%controls%end_time)]
     path = 0.0_wp
     associate (curve => model%curves(motion%curve))
       select case (motion%kind)
       case (motion_velocity)
         path = [curve_integral(curve, times(1), times(2)), curve_value(curve, times(2)), &
-          mean_slope(curve, times(2), dt, life)]
+          mean_slope(curve, times(2), dt, active_times)]
       case (motion_acceleration)
         path = [curve_moment(curve, times(1), times(2)), &
           curve_integral(curve, times(1), times(2)), curve_value(curve, times(2))]
       case (motion_displacement)
-        path = [curve_value(curve, times(2)), mean_slope(curve, times(2), dt, life), 0.0_wp]
-        ! The change of slope; none where one side lies outside the life of the motion.
-        if (times(2) - dt >= life(1) - same_time*dt .and. times(2) + dt <= life(2) + same_time*dt) &
-          path(3) = ((curve_value(curve, times(2) + dt) - path(1)) &
+        path = [curve_value(curve, times(2)), mean_slope(curve, times(2), dt, active_times), 0.0_wp]
+        ! Second difference; zero where one side lies outside the active time of the motion.
+        if (times(2) - dt >= active_times(1) - same_time*dt .and. times(2) + dt <= active_times(2) &
+          + same_time*dt) path(3) = ((curve_value(curve, times(2) + dt) - path(1)) &
           - (path(1) - curve_value(curve, times(2) - dt)))/dt**2
       end select
     end associate
@@ -200,22 +198,22 @@ contains
     if (motion%kind == motion_displacement) path(1) = path(1) - displacement
   end function follow_curve
 
-  !> Slope at `time`: the mean over `dt` to both sides, or that of the present piece where one side
-  !> lies outside the life of the motion. 0 for a life next to nothing.
-  pure function mean_slope(curve, time, dt, life) result(slope)
+  !> Slope at `time`: central difference over `dt`, or one-sided over the present segment where one
+  !> side lies outside the active time. 0 for an active time close to zero.
+  pure function mean_slope(curve, time, dt, active_times) result(slope)
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: time
     real(wp), intent(in) :: dt
-    real(wp), intent(in) :: life(2) !! first and last time that count
+    real(wp), intent(in) :: active_times(2) !! first and last time that count
     real(wp) :: slope
     real(wp) :: x(2)
     logical :: is_past, is_future
 
-    is_past = time - dt >= life(1) - same_time*dt
-    is_future = time + dt <= life(2) + same_time*dt
+    is_past = time - dt >= active_times(1) - same_time*dt
+    is_future = time + dt <= active_times(2) + same_time*dt
     x = [time - dt, time + dt]
     if (.not. is_future) then
-      x = [max(time - dt, life(1), maxval(curve%abscissa, mask=curve%abscissa < time &
+      x = [max(time - dt, active_times(1), maxval(curve%abscissa, mask=curve%abscissa < time &
         - same_time*dt)), time]
     else if (.not. is_past) then
       x = [time, min(time + dt, minval(curve%abscissa, mask=curve%abscissa > time + same_time*dt))]
@@ -224,8 +222,8 @@ contains
     if (x(2) > x(1)) slope = (curve_value(curve, x(2)) - curve_value(curve, x(1)))/(x(2) - x(1))
   end function mean_slope
 
-  !> Integral of (b - s) f(s) from a to b, the displacement from an acceleration: exact (Simpson's
-  !> rule from point to point, the integrand is of second degree).
+  !> Integral of (b - s) f(s) from a to b, the displacement from an acceleration. Exact by Simpson's
+  !> rule from point to point, since the integrand is of second degree.
   pure function curve_moment(curve, a, b) result(total)
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: a, b !! a <= b
@@ -246,9 +244,9 @@ contains
     end do
   end function curve_moment
 
-  !> Times at which a step must end: births and deaths of prescribed motions, where the equations
-  !> change; and with steps that grow, lest they leap over it, where a curve in use turns, where
-  !> forces come and go and where states are written.
+  !> Times at which a step must end: start and end of prescribed motions, where the equations
+  !> change; with automatic steps also corners of curves in use, start and end of forces, and plot
+  !> states.
   pure subroutine list_changes(model, changes)
     type(model_t), intent(in) :: model
     real(wp), allocatable, intent(out) :: changes(:)
@@ -260,7 +258,7 @@ contains
       if (.not. model%controls%implicit%is_automatic) return
       changes = [changes, conditions%pressures%arrival, model%contacts%birth, &
         model%contacts%death]
-      ! Plot states, where they are no closer than the first step.
+      ! Plot states at intervals not below the first step.
       associate (controls => model%controls, interval => model%controls%output%plot%dt)
         if (controls%output%plot%curve == 0 .and. interval >= controls%implicit%dt &
           .and. controls%end_time < most_plots*interval) &
@@ -272,7 +270,7 @@ contains
       do i = 1, size(model%curves)
         if (any(used == i)) changes = [changes, turning_points(model%curves(i))]
       end do
-      ! Curves of pressures start at their arrival: once for each time of arrival in a row.
+      ! Curves of pressures start at their arrival; one entry for equal consecutive loads.
       do i = 1, size(conditions%pressures)
         associate (load => conditions%pressures(i), before => conditions%pressures(max(1, i - 1)))
           if (i > 1 .and. load%curve == before%curve .and. abs(load%arrival - before%arrival) &
@@ -284,7 +282,7 @@ contains
   end subroutine list_changes
 
   !> Corners of a curve: where its slope changes sign, or by more than half of the steeper side.
-  !> (The points of a finely sampled smooth curve are none.)
+  !> (Points of a finely sampled smooth curve are none.)
   pure function turning_points(curve) result(times)
     type(curve_t), intent(in) :: curve
     real(wp), allocatable :: times(:)

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> The implicit driver: static equilibrium or generalised-alpha dynamics, step by step
-!> (doc/theory/implicit.md, section 4). What it writes: motion, velocity and acceleration of one
-!> instant, energies with the consistent mass; forces on boundaries and of groups of nodes, and
-!> their work, where histories ask for them (bndout, nodfor).
+!> Implicit driver: static equilibrium or generalised-alpha dynamics, step by step
+!> (doc/theory/implicit.md, section 4). Output: motion, velocity and acceleration of one instant,
+!> energies with the consistent mass; forces on boundaries and of node groups with their work
+!> (bndout, nodfor).
 module implicit_m
   use clock_m, only : lap, phase_nodes, phase_output
   use contact_reports_m, only : report_contact_end
@@ -17,8 +17,10 @@ module implicit_m
   use equations_m, only : number_equations, prescribe_step, equations_t
   use errors_m, only : error_t, raise, status_run
   use friction_m, only : has_slipped
-  use health_m, only : check_static_step, what_would_do, check_energy, check_ratio, check_radii, &
-    warn_of_energies, warn_of_contact_energy, made_by_forces, unaccounted, dissipated
+  use health_m, only : check_static_step, limit_point_advice, check_energy, check_ratio, &
+    check_radii, &
+    warn_of_energies, warn_of_contact_energy, created_by_forces, energy_unaccounted, &
+    scheme_dissipation
   use history_filling_m, only : fill_reactions, form_loads
   use history_tables_m, only : table_matsum, table_spcforc, table_bndout, table_nodfor, &
     table_secforc
@@ -32,9 +34,9 @@ module implicit_m
   use loads_m, only : damping_rates, is_active
   use log_m, only : write_log, warn, to_text
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, due_t, find_due, note_energies, write_instant, output_reach
+  use monitor_m, only : monitor_t, due_t, find_due, record_energies, write_instant, output_reach
   use newton_m, only : outcome_t, find_equilibrium
-  use progress_m, only : follow_progress
+  use progress_m, only : update_progress
   use requests_m, only : find_early_end, requests_t, read_requests
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
@@ -43,16 +45,16 @@ module implicit_m
   use state_m, only : state_t
   implicit none
   private
-  public :: advance_implicit, report_step, reactions_work, held_energy, spent_energy, &
-    count_step_boundaries
+  public :: advance_implicit, report_step, reactions_work, absorbed_energy, released_energy, &
+    add_boundary_work
 
-  !> Energy ratio above which a failure is put down to it.
+  !> Energy ratio above which a failure is attributed to growing energy.
   real(wp), parameter :: gained = 1.1_wp
 
 contains
 
-  !> From where the run begins to its end. When a step finds no equilibrium the last converged
-  !> state is written and stays.
+  !> Advance from the initial state to the end of the run. When a step finds no equilibrium, the
+  !> last converged state is written.
   subroutine advance_implicit(model, state, monitor, reason, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -76,28 +78,28 @@ contains
       if (allocated(error)) exit
       if (asked%stop) reason = 'stopped on request'
       call report_step(model, state, last, asked%plot, monitor, memory, error)
-      call follow_progress(monitor%progress, monitor%clock, state%cycle, .true., state%time, &
+      call update_progress(monitor%progress, monitor%clock, state%cycle, .true., state%time, &
         state%dt_before, memory%ratio)
     end do
     if (allocated(error) .and. .not. last) then
       call report_step(model, state, .true., .false., monitor, memory, second)
       if (error%status == status_run .and. memory%step%is_dynamic .and. memory%ratio > gained) &
-        error%message = error%message//'; its energy ratio is '//to_text(memory%ratio) &
-        //': the steps gain energy (shorter steps, or a spectral radius below 1)'
+        error%message = error%message//'; energy ratio '//to_text(memory%ratio) &
+        //': the time integration gains energy (use smaller steps or a spectral radius below 1)'
     end if
     call report_contact_end(model, state, monitor%log)
   end subroutine advance_implicit
 
-  !> After a step: what someone asks for, the plan of the next step, and the restart files that are
-  !> due. A run that goes on from one reports the state as this one is about to.
+  !> After a step: read requests, plan the next step, and write due restart files. A restarted run
+  !> reports the state as this one is about to.
   subroutine apply_requests(model, state, monitor, memory, asked, last, reason, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(implicit_memory_t), intent(inout) :: memory
-    type(requests_t), intent(out) :: asked  !! a stop only where there was a step left
+    type(requests_t), intent(out) :: asked  !! a stop only where a step is left
     logical, intent(out) :: last            !! the state is the last one
-    character(:), allocatable, intent(inout) :: reason !! of the end
+    character(:), allocatable, intent(inout) :: reason !! reason of the end
     type(error_t), allocatable, intent(inout) :: error
     type(step_control_t) :: planned
     logical :: ends, wanted(2) !! numbered_file, running_file
@@ -119,7 +121,7 @@ contains
     memory%control = planned
   end subroutine apply_requests
 
-  !> One step, tried again with a shorter one while that is allowed.
+  !> One step, repeated with a smaller one while that is allowed.
   subroutine advance_step(model, state, monitor, control, step, trial, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -130,8 +132,9 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(outcome_t) :: outcome
     type(trial_t) :: attempt
-    type(tie_memory_t), allocatable :: ties(:) !! as the step finds them
-    real(wp) :: held, work(2) !! before the step, and work behind it, J/m
+    type(tie_memory_t), allocatable :: ties(:) !! at the start of the step
+    real(wp) :: held, work(2) !! absorbed energy before, and external work before and after the
+                              !! step, J/m
     logical :: may_retry
 
     if (any(breaks(model%contacts))) ties = state%contacts%ties
@@ -140,7 +143,7 @@ contains
       call try_step(model, state, monitor, control%next, step, attempt, outcome)
       if (outcome%converged) exit
       may_retry = .false.
-      ! A body that nothing holds at the start of the step is none the better for a shorter one.
+      ! A singular stiffness at the start of a step needs constraints, not a smaller step.
       if (outcome%singular_equation == 0 .or. outcome%iterations > 1) &
         call cut_step(control, state%time, may_retry)
       if (.not. may_retry) then
@@ -150,30 +153,30 @@ contains
       end if
       call plan_step(control, state%time)
     end do
-    held = held_energy(model, state)
-    ! Of all that acts from outside.
+    held = absorbed_energy(model, state)
+    ! Work of all external actions.
     work(1) = state%external_work + sum(state%contacts%interference%work)
-    call commit(model, state, step, attempt, trial)
+    call accept_trial(model, state, step, attempt, trial)
     work(2) = state%external_work + sum(state%contacts%interference%work)
-    if (.not. step%is_dynamic) call check_static_step(work, [held, held_energy(model, state)], &
-      spent_energy(state, step), state%cycle, state%time, monitor%log)
-    ! The first negative pivot in the stiffness of an equilibrium, that which the step set out from.
+    if (.not. step%is_dynamic) call check_static_step(work, [held, absorbed_energy(model, state)], &
+      released_energy(state, step), state%cycle, state%time, monitor%log)
+    ! First negative pivot in the stiffness of an equilibrium, at the start of the step.
     if (outcome%began_negative .and. .not. (step%is_dynamic .or. step%began_negative)) &
       call warn(monitor%log, 'the stiffness at the end of step '//to_text(state%cycle - 1) &
-      //', time '//to_text(state%time - step%dt)//', has a negative pivot, and had none before: ' &
-      //'the equilibrium is not stable, the path has passed a limit point or a branch; ' &
-      //what_would_do)
+      //', time '//to_text(state%time - step%dt)//', has its first negative pivot: the ' &
+      //'equilibrium is unstable beyond a limit point or bifurcation; ' &
+      //limit_point_advice)
     step%began_negative = outcome%began_negative
     call grow_step(control, step%dt, outcome%iterations)
     call lap(monitor%clock, phase_nodes)
   end subroutine advance_step
 
-  !> A step to `time`. What slipped in the step before slips on in its first iteration; if that
-  !> finds no equilibrium, or leaves a body free, all sticks first: full iterations or searched
-  !> ones, as in the step before, then the other kind.
+  !> One step to `time`. Points that slipped in the previous step slip in the first iteration; if
+  !> that fails or leaves a singular stiffness, all points stick first, with full or searched
+  !> iterations as in the previous step, then with the other kind.
   subroutine try_step(model, state, monitor, time, step, attempt, outcome)
     type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state !! what breaks in the step
+    type(state_t), intent(inout) :: state !! ties that fail in the step
     type(monitor_t), intent(inout) :: monitor
     real(wp), intent(in) :: time
     type(step_t), intent(inout) :: step
@@ -188,19 +191,19 @@ contains
     call prescribe_step(model, state, time, step%equations, step%prescribed)
     i = merge(0, 1, has_slipped(state%contacts))
     do while (i <= 2)
-      step%slips_on = i == 0
+      step%starts_slipping = i == 0
       call start_trial(model, state, attempt)
       call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
       if (outcome%converged) then
-        ! What equilibrium breaks stays broken in the equilibrium that is then looked for, of the
-        ! same step: there are only so many places.
+        ! Ties that fail in equilibrium stay failed, and the equilibrium of the same step is sought
+        ! again.
         broke = .false.
         do k = 1, size(model%contacts)
           call break_at_end(model%contacts(k), time, attempt%contacts(k), n_new)
           if (n_new == 0) cycle
           broke = .true.
-          call write_log(monitor%log, 'step to '//to_text(time)//': of the ties of interface ' &
-            //to_text(model%contacts(k)%id)//' '//to_text(n_new)//' places break')
+          call write_log(monitor%log, 'step to '//to_text(time)//': '//to_text(n_new) &
+            //' tie(s) of interface '//to_text(model%contacts(k)%id)//' failed')
           state%contacts(k)%ties = attempt%contacts(k)%ties
         end do
         if (.not. broke) return
@@ -208,7 +211,7 @@ contains
       end if
       call write_log(monitor%log, 'step to '//to_text(time)//': '//outcome%reason)
       if (i > 0) then
-        ! The first iteration is not searched: one that fails there fails again.
+        ! The first iteration has no line search, so a failure there would repeat.
         if (outcome%iterations <= 1) return
         step%searches = .not. step%searches
       end if
@@ -216,14 +219,14 @@ contains
     end do
   end subroutine try_step
 
-  !> The trial becomes the state; works of contact, loads, damping and prescribed motion by the
-  !> trapezoidal rule.
-  subroutine commit(model, state, step, attempt, trial)
+  !> Accept the trial as the state, with works of contact, loads, damping and prescribed motion by
+  !> the trapezoidal rule.
+  subroutine accept_trial(model, state, step, attempt, trial)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(step_t), intent(inout) :: step
     type(trial_t), intent(inout) :: attempt
-    type(trial_t), intent(inout) :: trial    !! of the state before; of the new state on return
+    type(trial_t), intent(inout) :: trial    !! of the previous state in, of the new one out
     real(wp), allocatable :: acceleration(:, :), velocity(:, :)
     integer :: i
 
@@ -233,7 +236,7 @@ contains
       associate (memory => attempt%contacts(i))
         call count_step(attempt%motion, state%contacts(i), memory)
         if (has_offsets(memory)) call update_offsets(model%contacts(i), memory)
-        ! Energy that springs have from fading offsets is no work of theirs: contact has made it.
+        ! Energy that springs gain from decaying offsets is created by contact.
         call measure_springs(memory)
         memory%monitor%balance = memory%energy - memory%monitor%stored
       end associate
@@ -249,13 +252,13 @@ contains
     end if
     state%external_work = state%external_work + reactions_work(model, step%equations, trial, &
       attempt, state, velocity)
-    call count_step_boundaries(model, trial, attempt, step%time, velocity, state)
+    call add_boundary_work(model, trial, attempt, step%time, velocity, state)
     if (step%is_dynamic) then
       state%motion(3:4, :) = velocity
       state%acceleration = acceleration
     end if
     trial = attempt
-    ! What the forces of cross sections are formed of if anyone asks for them.
+    ! Element values before the step, for the forces of cross sections.
     if (allocated(state%cut_force)) call store_cut_chunks(model, state%elements, trial%before)
     state%motion(1:2, :) = attempt%motion(1:2, :)
     state%elements = attempt%elements
@@ -264,23 +267,23 @@ contains
     state%time = step%time
     state%dt_before = step%dt
     state%cycle = state%cycle + 1
-  end subroutine commit
+  end subroutine accept_trial
 
-  !> The error that ends the run; a free motion is named by node and direction.
+  !> Raise the error that ends the run; a singular stiffness is reported with node and direction.
   subroutine raise_failure(model, state, step, outcome, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
     type(outcome_t), intent(in) :: outcome
     type(error_t), allocatable, intent(out) :: error
-    integer :: place(2) !! direction and node
+    integer :: freedom(2) !! direction and node
 
     if (outcome%singular_equation > 0) then
-      place = findloc(step%equations%number, outcome%singular_equation)
+      freedom = findloc(step%equations%number, outcome%singular_equation)
       call raise(error, 'the stiffness is singular at time '//to_text(state%time)//': node ' &
-        //to_text(model%mesh%node_id(place(2)))//' moves freely in ' &
-        //merge('x', 'y', place(1) == 1)//'; the model needs constraints, contact or inertia ' &
-        //'(IMASS = 1) that hold it', status_run)
+        //to_text(model%mesh%node_id(freedom(2)))//' is free to move in ' &
+        //merge('x', 'y', freedom(1) == 1)//'; add constraints, contact or inertia (IMASS 1)', &
+        status_run)
     else
       call raise(error, 'no equilibrium at time '//to_text(step%time)//' with the step ' &
         //to_text(step%dt)//': '//outcome%reason//'; the last converged state is that of time ' &
@@ -288,20 +291,20 @@ contains
     end if
   end subroutine raise_failure
 
-  !> Write what is due; of a state that was reported before, only what was not written then. The
-  !> memory learns the energy ratio.
+  !> Write due outputs; of a state that was reported before, only outputs that were not written
+  !> then. Updates the energy ratio.
   subroutine report_step(model, state, last, plots, monitor, memory, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     logical, intent(in) :: last
-    logical, intent(in) :: plots          !! someone asks for a plot state
+    logical, intent(in) :: plots          !! a plot state is requested
     type(monitor_t), intent(inout) :: monitor
-    type(implicit_memory_t), intent(inout) :: memory !! of the state; `written` is that of the one
-                                          !! reported before, and becomes that of this one
+    type(implicit_memory_t), intent(inout) :: memory !! `written`: outputs of the previous report
+                                                     !! in, of this one out
     type(error_t), allocatable, intent(out) :: error
     type(due_t) :: due
     real(wp) :: dt, kinetic(size(model%parts)), momentum(2, size(model%parts))
-    character(:), allocatable :: cause !! where missing energy has gone
+    character(:), allocatable :: cause !! cause of a missing energy
 
     dt = output_reach(model%controls, state%dt)
     due = find_due(monitor, state%time, dt, state%cycle == 0 .or. last)
@@ -321,7 +324,7 @@ contains
       shot%acceleration = state%acceleration
       call fill_energies(model, state, [0.0_wp, 0.0_wp], shot)
       shot%energies%kinetic = 0.5_wp*sum(shot%velocity*mass_times(model, shot%velocity))
-      call note_energies(model, .true., state, monitor)
+      call record_energies(model, .true., state, monitor)
       if (due%tables(table_matsum)) then
         call fill_parts(model, state%elements, shot)
         call sum_part_motion(model, shot%velocity, kinetic, momentum)
@@ -336,25 +339,26 @@ contains
       if (due%tables(table_secforc)) call cut_sections(model, memory%trial, state)
       memory%ratio = energy_ratio(shot%energies)
       call write_instant(model, due, dt, memory%ratio, state, monitor, error)
-      if (.not. allocated(error)) call check_energy(model%controls, shot%energies, made_by_forces, &
-        error)
-      cause = unaccounted
+      if (.not. allocated(error)) call check_energy(model%controls, shot%energies, &
+        created_by_forces, error)
+      cause = energy_unaccounted
       if (memory%step%is_dynamic .and. memory%step%gamma > 0.5_wp*(1.0_wp + epsilon(1.0_wp))) &
-        cause = dissipated
+        cause = scheme_dissipation
       if (.not. allocated(error)) call check_ratio(shot%energies, &
-        spent_energy(state, memory%step), cause, state%cycle, state%time, monitor%warned_ratio, &
+        released_energy(state, memory%step), cause, state%cycle, state%time, monitor%warned_ratio, &
         monitor%log)
       call check_radii(model, state, monitor%warned_radii, monitor%log)
       if (last .and. .not. allocated(error)) then
         call warn_of_contact_energy(shot%energies, monitor%log)
-        call warn_of_energies(shot%energies, spent_energy(state, memory%step), cause, monitor%log)
+        call warn_of_energies(shot%energies, released_energy(state, memory%step), cause, &
+          monitor%log)
       end if
     end associate
     call lap(monitor%clock, phase_output)
   end subroutine report_step
 
-  !> All that a body at rest has taken of the work done on it, stored or dissipated, J/m.
-  function held_energy(model, state) result(held)
+  !> Energy that a body at rest has stored or dissipated, J/m.
+  function absorbed_energy(model, state) result(held)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp) :: held
@@ -367,27 +371,28 @@ contains
     held = sum(internal + hourglass + viscous) + sum(state%contacts%energy) &
       + sum(state%contacts%damping_work) + sum(state%contacts%friction%work)
     if (allocated(state%elements%damping_work)) held = held + sum(state%elements%damping_work)
-  end function held_energy
+  end function absorbed_energy
 
-  !> Energy that may go without an account, J/m: in statics what springs and pre-stressed bodies
-  !> hold before the first equilibrium.
-  pure function spent_energy(state, step) result(spent)
+  !> Admissible loss of energy, J/m: in statics the energy of springs and pre-stressed bodies before
+  !> the first equilibrium.
+  pure function released_energy(state, step) result(spent)
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
     real(wp) :: spent
 
     spent = merge(0.0_wp, max(0.0_wp, state%initial_energy), step%is_dynamic)
-  end function spent_energy
+  end function released_energy
 
-  !> Work of the forces that hold prescribed degrees of freedom to their curves: of inertia, change
-  !> of momentum times mean velocity, which is the kinetic energy that they gain, also in a blow; of
-  !> the others by the trapezoidal rule.
+  !> Work of the reactions of prescribed degrees of freedom: of inertia the change of momentum times
+  !> mean velocity, which equals the gain of kinetic energy also in impacts; of other forces by the
+  !> trapezoidal rule.
   function reactions_work(model, equations, before, after, state, velocity) result(work)
     type(model_t), intent(in) :: model
     type(equations_t), intent(in) :: equations
     type(trial_t), intent(in) :: before, after
-    type(state_t), intent(in) :: state                  !! as the step has found it
-    real(wp), allocatable, intent(in) :: velocity(:, :) !! (2, n_node) v(n+1); not there in statics
+    type(state_t), intent(in) :: state                  !! at the start of the step
+    real(wp), allocatable, intent(in) :: velocity(:, :) !! (2, n_node) v(n+1); not allocated in
+                                                        !! statics
     real(wp) :: work
 
     work = 0.0_wp
@@ -399,14 +404,15 @@ contains
       equations%number > equations%n_free)
   end function reactions_work
 
-  !> Work of a step, of which the state has not heard yet: loads and reactions by the trapezoidal
-  !> rule, and of inertia the change of momentum times mean velocity.
-  subroutine count_step_boundaries(model, before, after, time, velocity, state)
+  !> Add the work of a step in bndout and nodfor: loads and reactions by the trapezoidal rule,
+  !> inertia by the change of momentum times mean velocity.
+  subroutine add_boundary_work(model, before, after, time, velocity, state)
     type(model_t), intent(in) :: model
     type(trial_t), intent(in) :: before, after
-    real(wp), intent(in) :: time                        !! at the end of the step
-    real(wp), allocatable, intent(in) :: velocity(:, :) !! (2, n_node) there; not there in statics
-    type(state_t), intent(inout) :: state               !! as the step has found it
+    real(wp), intent(in) :: time                        !! end of the step, s
+    real(wp), allocatable, intent(in) :: velocity(:, :) !! (2, n_node) v(n+1); not allocated in
+                                                        !! statics
+    type(state_t), intent(inout) :: state               !! at the start of the step
     real(wp), allocatable :: power(:, :), previous(:, :)
     integer :: i
 
@@ -435,9 +441,10 @@ contains
       state%group_work = state%group_work + 0.5_wp*sum((before%internal(:, nodes) &
         + after%internal(:, nodes))*after%motion(3:4, nodes), 1)
     end associate
-  end subroutine count_step_boundaries
+  end subroutine add_boundary_work
 
-  !> Forces of the present instant, also where a run that goes on is the first to ask for them.
+  !> Forces of bndout and nodfor at the present instant, also where a restarted run is the first to
+  !> ask for them.
   subroutine find_forces(model, reaction, internal, state)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: reaction(:, :)   !! (2, n_node) of all degrees of freedom

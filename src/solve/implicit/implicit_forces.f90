@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> All nodal forces of one instant for the implicit driver, by the explicit kernels from a committed
+!> Nodal forces of one instant for the implicit driver, by the explicit kernels from a committed
 !> state to a trial displacement; residual and tangent of one step (doc/theory/implicit.md, sections
 !> 1 and 2).
 module implicit_forces_m
@@ -25,13 +25,13 @@ module implicit_forces_m
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: trial_t, start_trial, assemble_forces, net_force, trouble_of, &
+  public :: trial_t, start_trial, assemble_forces, net_force, trial_fault, &
     cut_sections, step_t, assemble_residual, assemble_tangent, new_acceleration, new_velocity
 
-  !> Step of the kernels: motion holds increments in place of velocities.
+  !> Step of the kernels: motion contains increments in place of velocities.
   real(wp), parameter :: unit_step = 1.0_wp
 
-  !> What a trial displacement makes of a committed state.
+  !> Forces and element state of a trial displacement from a committed state.
   type, extends(visited_t) :: trial_t
     real(wp), allocatable :: motion(:, :)   !! (4, n_node) u, and u minus the committed u
     type(block_state_t) :: elements
@@ -39,35 +39,34 @@ module implicit_forces_m
     real(wp), allocatable :: internal(:, :) !! (2, n_node) divergence of stress
     real(wp), allocatable :: contact(:, :)  !! (2, n_node)
     real(wp), allocatable :: external(:, :) !! (2, n_node) loads and gravity
-    real(wp), allocatable :: damping(:, :)  !! (2, n_node) D M v of an equilibrium; only where the
-                                            !! deck damps by mass
+    real(wp), allocatable :: damping(:, :)  !! (2, n_node) D M v of an equilibrium; allocated with
+                                            !! mass damping
     real(wp), allocatable :: slots(:, :)    !! forces of tiles on their special nodes
-    type(packed_buffer_t), allocatable :: before(:) !! chunks of cross sections before the step,
-                                            !! until the forces of these are formed
+    type(packed_buffer_t), allocatable :: before(:) !! element values before the step in chunks of
+                                                    !! cross sections, until their forces are formed
   contains
     procedure :: visit => visit_trial
   end type trial_t
 
-  !> One step. Static: all weights of the old instant are zero and there is no inertia.
+  !> One step. In statics all weights of the old instant are zero and there is no inertia.
   type, extends(visited_t) :: step_t
-    real(wp) :: time = 0.0_wp          !! at its end
+    real(wp) :: time = 0.0_wp          !! at its end, s
     real(wp) :: dt = 0.0_wp
     logical :: is_dynamic = .false.
     real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, gamma = 0.5_wp, beta = 0.25_wp
     real(wp), allocatable :: old_force(:, :) !! (2, n_node) `net_force` at its start
     type(equations_t) :: equations
-    logical :: searches = .false.      !! iterations that go too far are shortened
-    logical :: began_negative = .false. !! the matrix at its start had an odd number of negative
-                                       !! pivots
-    logical :: slips_on = .true.       !! what slipped before does so in the first iteration
-    type(prescribed_step_t) :: prescribed    !! what the curves ask for
+    logical :: searches = .false.      !! line search
+    logical :: began_negative = .false. !! odd number of negative pivots at its start
+    logical :: starts_slipping = .true. !! points that slipped before slip in the first iteration
+    type(prescribed_step_t) :: prescribed    !! prescribed motion
   contains
     procedure :: visit => visit_step
   end type step_t
 
 contains
 
-  !> A trial at the committed state.
+  !> Trial at the committed state.
   subroutine start_trial(model, state, trial)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -86,7 +85,7 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state      !! committed
     real(wp), intent(in) :: time
-    logical, intent(in) :: is_first         !! touching counts as closed
+    logical, intent(in) :: is_first         !! points at zero gap count as closed
     type(clock_t), intent(inout) :: clock
     type(trial_t), intent(inout) :: trial
     real(wp), allocatable :: force(:, :)
@@ -125,7 +124,7 @@ contains
   !> Forces of the elements of cross sections, unless the state has them.
   subroutine cut_sections(model, trial, state)
     type(model_t), intent(in) :: model
-    type(trial_t), intent(inout) :: trial !! that has become the state
+    type(trial_t), intent(inout) :: trial !! that became the state
     type(state_t), intent(inout) :: state
 
     if (.not. allocated(trial%before)) return
@@ -134,7 +133,7 @@ contains
     deallocate (trial%before)
   end subroutine cut_sections
 
-  !> Internal minus contact and external forces, and damping.
+  !> Internal minus contact and external forces, plus damping.
   pure function net_force(trial) result(force)
     type(trial_t), intent(in) :: trial
     real(wp) :: force(2, size(trial%internal, 2))
@@ -143,23 +142,22 @@ contains
     if (allocated(trial%damping)) force = force + trial%damping
   end function net_force
 
-  !> What is wrong with a trial in words; empty where all volumes are
-  !> positive and all forces finite.
-  pure function trouble_of(trial) result(trouble)
+  !> Fault of a trial in words; empty where all volumes are positive and all forces finite.
+  pure function trial_fault(trial) result(fault)
     type(trial_t), intent(in) :: trial
-    character(:), allocatable :: trouble
+    character(:), allocatable :: fault
 
-    trouble = ''
+    fault = ''
     if (.not. minval(trial%elements%volume_limit) > 0.0_wp) then
-      trouble = 'an element has turned inside out'
+      fault = 'an element has a negative volume'
     else if (.not. sum(abs(trial%external)) <= huge(1.0_wp)) then
-      trouble = 'the loads are not finite'
+      fault = 'the loads are not finite'
     else if (.not. sum(abs(trial%internal)) + sum(abs(trial%contact)) <= huge(1.0_wp)) then
-      trouble = 'the forces are not finite'
+      fault = 'the forces are not finite'
     end if
-  end function trouble_of
+  end function trial_fault
 
-  !> The forces of the state.
+  !> Visit the forces of the state.
   subroutine visit_trial(self, visitor)
     class(trial_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -220,8 +218,8 @@ contains
       velocity)
   end function new_velocity
 
-  !> dR/du(n+1), collected. Inertia and damping of prescribed degrees of freedom do not depend on u,
-  !> so their columns hold stiffness alone.
+  !> dR/du(n+1), not compressed. Inertia and damping of prescribed degrees of freedom do not depend
+  !> on u, so their columns hold stiffness alone.
   subroutine assemble_tangent(model, state, step, trial, clock, matrix)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -252,8 +250,8 @@ contains
       /(step%beta*step%dt), columns, matrix, damping_rates(model, step%time))
   end subroutine assemble_tangent
 
-  !> Minus the derivative of a pressure, which turns and stretches with its edge, and grows with its
-  !> radius on an axisymmetric body.
+  !> Minus the derivative of a pressure load with respect to the displacement of its edge; in
+  !> axisymmetric models also to its radius.
   subroutine add_pressure_stiffness(model, load, motion, time, equations, matrix)
     type(model_t), intent(in) :: model
     type(pressure_load_t), intent(in) :: load
@@ -290,7 +288,7 @@ contains
     call add_block(matrix, rows, rows, block)
   end subroutine add_pressure_stiffness
 
-  !> What a step hands to the next.
+  !> Visit the components that the next step needs.
   subroutine visit_step(self, visitor)
     class(step_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

@@ -1,8 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What the implicit driver remembers from step to step besides the state, and where a run begins:
-!> at time zero, or where a restart file says. Lengths of steps: constant, or growing and shrinking
-!> with the iterations that they take; where the equations change (birth or death of a prescribed
-!> motion) a step is divided.
+!> Memory of the implicit driver from step to step besides the state, and the start at time zero or
+!> from a restart file. Step lengths: constant, or growing and shrinking with the number of
+!> iterations; a step is divided where the equations change (start or end of a prescribed motion).
 module implicit_start_m
   use clock_m, only : lap, phase_solver
   use contact_reports_m, only : report_contact_start
@@ -35,18 +34,19 @@ module implicit_start_m
   public :: step_control_t, start_step_control, plan_step, grow_step, cut_step, round_off, &
     implicit_memory_t, begin_steps, plan_next, has_ended
 
-  !> What a step that took few iterations grows by, and what one that failed shrinks to.
+  !> Growth of a step with few iterations, and reduction of a failed one.
   real(wp), parameter :: growth = 1.5_wp, cut = 0.5_wp
-  !> Part of a step that is not left over before a time at which a step must end.
+  !> Share of a step below which no remainder is left before a time at which a step must end.
   real(wp), parameter :: least_rest = 0.25_wp
-  !> Part of a step by which a time may be missed.
+  !> Share of a step by which a time may be missed.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
   !> Step lengths of a run.
   type, extends(visited_t) :: step_control_t
     real(wp) :: dt = 0.0_wp        !! of a whole step, s
-    real(wp) :: target = 0.0_wp    !! where the present whole step ends
-    real(wp) :: next = 0.0_wp      !! where the next step ends: there, or where the equations change
+    real(wp) :: target = 0.0_wp    !! end of the present whole step, s
+    real(wp) :: next = 0.0_wp      !! end of the next step: `target`, or where the equations change,
+                                   !! s
     real(wp) :: end_time = 0.0_wp
     logical :: is_last = .false.   !! the next step ends the run
     logical :: is_automatic = .false.
@@ -54,25 +54,25 @@ module implicit_start_m
     real(wp) :: most = 0.0_wp      !! longest step
     integer :: few = 0             !! iterations below which the step grows
     integer :: many = 0            !! iterations above which it shrinks
-    real(wp), allocatable :: changes(:) !! when the equations change
+    real(wp), allocatable :: changes(:) !! times at which the equations change, s
   contains
     procedure :: visit => visit_control
   end type step_control_t
 
-  !> What one step remembers of those before.
+  !> Memory of the driver.
   type, extends(visited_t) :: implicit_memory_t
     type(step_control_t) :: control
     type(step_t) :: step
     type(trial_t) :: trial     !! forces of the state
-    type(due_t) :: written     !! of the state that was reported last
-    real(wp) :: ratio = 1.0_wp !! last energy ratio known
+    type(due_t) :: written     !! outputs of the last reported state
+    real(wp) :: ratio = 1.0_wp !! last known energy ratio
   contains
     procedure :: visit => visit_memory
   end type implicit_memory_t
 
 contains
 
-  !> As the deck asks; the first step is brought between the shortest and the longest.
+  !> Step control of the deck; the first step is limited to the shortest and longest step.
   pure function start_step_control(controls, changes) result(control)
     type(controls_t), intent(in) :: controls
     real(wp), intent(in) :: changes(:) !! times at which the equations change, in any order
@@ -90,15 +90,15 @@ contains
       control%most = max(control%most, control%least)
       if (control%is_automatic) control%dt = min(max(control%dt, control%least), control%most)
       control%few = implicit%best_iterations - implicit%iteration_window
-      ! A step that took all iterations it may take was a hard one too.
+      ! A step with the largest number of iterations is a hard one too.
       control%many = max(control%few, min(implicit%best_iterations + implicit%iteration_window, &
         implicit%max_iteration - 1))
     end associate
   end function start_step_control
 
-  !> End of the next step. The last step is stretched or shortened to end the run in time. Of
-  !> constant steps what a change leaves over follows as a step of its own, of automatic ones a
-  !> whole step; a step that would leave a small rest before a change goes half of the way.
+  !> End of the next step. The last step is stretched or shortened to the end time. A remainder at a
+  !> change of the equations is a step of its own with constant steps, a whole step with automatic
+  !> ones; a step that would leave a small remainder before a change goes half of the way.
   pure subroutine plan_step(control, time)
     type(step_control_t), intent(inout) :: control
     real(wp), intent(in) :: time !! start of the step
@@ -122,8 +122,8 @@ contains
     end associate
   end subroutine plan_step
 
-  !> After a step of length `dt` that converged. Few iterations of a shortened step
-  !> say nothing of a whole one.
+  !> Adapt the step after a converged step of length `dt`. Few iterations in a shortened step do not
+  !> count.
   pure subroutine grow_step(control, dt, iterations)
     type(step_control_t), intent(inout) :: control
     real(wp), intent(in) :: dt
@@ -135,8 +135,7 @@ contains
     if (iterations > control%many) control%dt = max(control%least, cut*control%dt)
   end subroutine grow_step
 
-  !> After a step from `time` that did not converge: whether a shorter one
-  !> than was tried may follow.
+  !> Reduce the step after a failed step from `time`, if that is allowed.
   pure subroutine cut_step(control, time, may_retry)
     type(step_control_t), intent(inout) :: control
     real(wp), intent(in) :: time
@@ -150,7 +149,7 @@ contains
     control%target = time
   end subroutine cut_step
 
-  !> What the deck and the plan of the next step do not give.
+  !> Visit the components that deck and plan do not give.
   subroutine visit_control(self, visitor)
     class(step_control_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -160,7 +159,7 @@ contains
     call visitor%visit('target', self%target)
   end subroutine visit_control
 
-  !> What the next step has to know of those before.
+  !> Visit the components that the next step needs.
   subroutine visit_memory(self, visitor)
     class(implicit_memory_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -171,13 +170,13 @@ contains
     call visitor%visit('ratio', self%ratio)
   end subroutine visit_memory
 
-  !> What is remembered up to the first report, and the plan of the first step.
+  !> Set up the memory up to the first report, and plan the first step.
   subroutine begin_steps(model, state, monitor, memory, last, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(implicit_memory_t), intent(out) :: memory
-    logical, intent(out) :: last       !! there is no step left
+    logical, intent(out) :: last       !! no step is left
     type(error_t), allocatable, intent(out) :: error
     type(step_control_t) :: planned
     real(wp), allocatable :: changes(:)
@@ -200,14 +199,14 @@ contains
       call close_restart(monitor%restarts%source, error)
       if (allocated(error)) return
       memory%step%old_force = net_force(memory%trial)
-      ! The end may have come nearer while a whole step is under way.
+      ! The end time may have been reduced within a whole step.
       memory%control%target = min(memory%control%target, memory%control%end_time)
       last = has_ended(model, state, memory%control)
     else
       associate (implicit => model%controls%implicit)
         if (abs(memory%control%dt - implicit%dt) > 0.0_wp) call warn(monitor%log, &
-          'the first step '//to_text(implicit%dt)//' does not lie between DTMIN and DTMAX of ' &
-          //'*CONTROL_IMPLICIT_AUTO; it is '//to_text(memory%control%dt))
+          'the first step '//to_text(implicit%dt)//' is outside DTMIN and DTMAX of ' &
+          //'*CONTROL_IMPLICIT_AUTO and becomes '//to_text(memory%control%dt))
         call write_log(monitor%log, 'implicit method: '//trim(merge('dynamic', 'static ', &
           implicit%is_dynamic))//', first step '//to_text(implicit%dt))
         if (implicit%is_dynamic) call write_log(monitor%log, '  '//implicit%scheme//': alpha_m ' &
@@ -228,13 +227,13 @@ contains
     memory%control = planned
   end subroutine begin_steps
 
-  !> Plan the step that leads away from the state, unless there is none.
+  !> Plan the next step, if any.
   pure subroutine plan_next(model, last, state, control, ends)
     type(model_t), intent(in) :: model
     logical, intent(in) :: last
     type(state_t), intent(inout) :: state   !! gets its step
     type(step_control_t), intent(inout) :: control
-    logical, intent(out) :: ends            !! that step is meant to be the last one
+    logical, intent(out) :: ends            !! that step is the last one
 
     state%dt = control%dt
     ends = .false.
@@ -245,7 +244,7 @@ contains
     if (model%controls%end_cycle > 0) ends = ends .or. state%cycle + 1 >= model%controls%end_cycle
   end subroutine plan_next
 
-  !> Whether the run has come to its end.
+  !> Whether the run is at its end.
   pure function has_ended(model, state, control) result(ended)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -256,7 +255,7 @@ contains
     if (model%controls%end_cycle > 0) ended = ended .or. state%cycle >= model%controls%end_cycle
   end function has_ended
 
-  !> Damping of what sticks, by the frequencies of the springs of contact at time zero.
+  !> Damping of sticking points, from the frequencies of the contact springs at time zero.
   subroutine set_lags(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -297,7 +296,7 @@ contains
     if (allocated(state%cut_force)) call store_cut_chunks(model, state%elements, &
       memory%trial%before)
     state%contacts = memory%trial%contacts
-    ! Springs loaded at time zero hold energy that no force has put in.
+    ! Springs loaded at time zero start with their stored energy.
     do i = 1, size(state%contacts)
       call measure_springs(state%contacts(i))
       state%contacts(i)%energy = state%contacts(i)%monitor%stored
@@ -310,8 +309,7 @@ contains
     call lap(monitor%clock, phase_solver)
   end subroutine start_implicit
 
-  !> M a(0) = -f(0) on the free degrees of freedom; those of prescribed ones, which
-  !> the state has, act on them.
+  !> Solve M a(0) = -f(0) on the free degrees of freedom, with the accelerations of prescribed ones.
   subroutine find_first_acceleration(model, monitor, step, state, error)
     type(model_t), intent(in) :: model
     type(monitor_t), intent(inout) :: monitor

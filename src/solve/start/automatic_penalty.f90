@@ -1,12 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> Penalties that the deck gives as a share of the largest one for which the step is stable (PUNIT
-!> 3), by the bound of springs that stay closed and by that of springs that open and close. The step
-!> is the one that the elements, and ties, alone would have (TSSFAC times the smallest L/c, or the
-!> curve LCTM). Each such interface may take what that step leaves beside the elements; where
-!> interfaces share nodes, all automatic ones are lowered by the same factor until their sum fits.
-!> A penalty from the built-in estimate (PUNIT 2) may take no more than that either where its
-!> surface is of soft and stiff materials: the mean of these, in springs on nodes of the soft one,
-!> would turn them round within a step.
+!> Penalties given as a share of the largest stable one (PUNIT 3), by the bounds of springs that
+!> stay closed and of springs that open and close. The step is that of elements and ties alone
+!> (TSSFAC times the smallest L/c, or the curve LCTM). Interfaces that share nodes are reduced by a
+!> common factor until their sum is stable. A default penalty (PUNIT 2) is limited in the same way
+!> where a surface has soft and stiff materials: their mean stiffness would be unstable at nodes of
+!> the soft one.
 module automatic_penalty_m
   use contact_log_m, only : penalty_text
   use contact_penalty_m, only : spread_of_stiffness, has_default_penalty
@@ -27,15 +25,15 @@ module automatic_penalty_m
   private
   public :: set_automatic_penalties
 
-  integer, parameter :: n_halving = 60           !! of the common factor
-  real(wp), parameter :: round_off = 1.0e-12_wp  !! by which a bound may miss the step that it was
+  integer, parameter :: n_halving = 60           !! bisections of the common factor
+  real(wp), parameter :: round_off = 1.0e-12_wp  !! round-off of a bound against the step it was
                                                  !! made for
-  real(wp), parameter :: much_stiffer = 10.0_wp  !! ratio of bulk moduli of one surface
+  real(wp), parameter :: much_stiffer = 10.0_wp  !! ratio of bulk moduli within one surface
 
 contains
 
-  !> Give every interface with PUNIT 3 its penalty and tell the log; lower those of surfaces of soft
-  !> and stiff materials to what the step bears.
+  !> Set the penalties of interfaces with PUNIT 3, and limit those of surfaces with soft and stiff
+  !> materials.
   subroutine set_automatic_penalties(model, state, log, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -49,7 +47,7 @@ contains
 
     share = sought_shares(model)
     if (.not. any(share > 0.0_wp)) return
-    ! One pass over the elements at rest leaves their stable steps behind.
+    ! One pass over the undeformed elements gives their stable steps.
     allocate (force(2, model%layout%n_local))
     do i = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i))
@@ -59,7 +57,7 @@ contains
       end associate
     end do
     limit = minval(state%elements%time_limit)
-    ! Ties may lower it.
+    ! Ties may reduce it.
     tied = limit
     if (model%controls%contact_step /= contact_step_free .and. any(is_tied(model%contacts))) then
       call bound_springs(model%contacts, state%contact_mass, state%contacts, &
@@ -69,7 +67,7 @@ contains
     dt = scaled_step(model, tied, state%time)
     if (.not. dt < limit) then
       if (any(model%contacts%penalty_unit == penalty_share)) call raise(error, &
-        'an automatic penalty (PUNIT 3) finds no room: the time step ' &
+        'no automatic penalty (PUNIT 3) is stable: the time step ' &
         //to_text(dt)//' is not below the stable step of the elements '//to_text(limit) &
         //'; choose a smaller TSSFAC or LCTM', status_input)
       return
@@ -78,9 +76,9 @@ contains
     do i = 1, size(factor)
       if (model%contacts(i)%penalty_unit /= penalty_share) cycle
       if (.not. factor(i) > 0.0_wp) then
-        call raise(error, 'interface '//to_text(model%contacts(i)%id)//': the penalties of other ' &
-          //'interfaces at its nodes leave no room for an automatic one (PUNIT 3) at the time ' &
-          //'step '//to_text(dt), status_input)
+        call raise(error, 'interface '//to_text(model%contacts(i)%id)//': no automatic penalty ' &
+          //'(PUNIT 3) is stable beside the penalties of other interfaces at its nodes at the ' &
+          //'time step '//to_text(dt), status_input)
         return
       end if
     end do
@@ -104,21 +102,21 @@ contains
     end do
   end subroutine set_automatic_penalties
 
-  !> Interface `i` has less than the built-in penalty, and what does without: a warning where
-  !> somebody has chosen the penalty.
+  !> Report that the penalty of an interface was reduced: a warning where the user chose the
+  !> penalty.
   subroutine report_lowered_penalty(model, i, dt, memory, log)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
     real(wp), intent(in) :: dt !! s
-    type(contact_state_t), intent(in) :: memory !! with the penalty that it has now
+    type(contact_state_t), intent(in) :: memory !! with the reduced penalty
     type(log_t), intent(inout) :: log
     character(:), allocatable :: text
 
-    text = 'interface '//to_text(model%contacts(i)%id)//': one of its surfaces is of soft ' &
-      //'and stiff materials, and nodes of the soft ones do not bear the mean penalty of both at ' &
-      //'the time step '//to_text(dt)//'; it is lowered to ' &
-      //penalty_text(model%contacts(i), model, memory)//'. Stiff parts sink in less with ' &
-      //'interfaces of their own, or with the step of the springs (ECDT 2 of *CONTROL_CONTACT)'
+    text = 'interface '//to_text(model%contacts(i)%id)//': one of its surfaces has soft ' &
+      //'and stiff materials, and the default penalty is unstable at nodes of the soft one at ' &
+      //'the time step '//to_text(dt)//'; it is reduced to ' &
+      //penalty_text(model%contacts(i), model, memory)//'. Separate interfaces, or the ' &
+      //'step of the springs (ECDT 2 of *CONTROL_CONTACT), reduce the penetration of stiff parts'
     if (has_default_penalty(model%contacts(i), model%controls)) then
       call write_log(log, text)
     else
@@ -126,9 +124,9 @@ contains
     end if
   end subroutine report_lowered_penalty
 
-  !> By interface the share of the largest stable penalty that the memory holds a penalty of: PEN
-  !> with PUNIT 3; 1 for the mean of soft and stiff materials, which may have no more than that, in
-  !> an explicit run whose step does not follow it; 0 for penalties that stand as given.
+  !> Share of the largest stable penalty sought for each interface: PEN with PUNIT 3; 1 as upper
+  !> bound for surfaces with soft and stiff materials in an explicit run whose step does not follow
+  !> the springs; 0 for fixed penalties.
   pure function sought_shares(model) result(share)
     type(model_t), intent(in) :: model
     real(wp) :: share(size(model%contacts))
@@ -147,11 +145,11 @@ contains
     end do
   end function sought_shares
 
-  !> Factors on the penalties in the memories: 0 where there is no room, 1 for given penalties.
+  !> Factors on the present penalties: 0 where none is stable, 1 for fixed penalties.
   pure subroutine find_factors(model, state, steps, share, factor)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    real(wp), intent(in) :: steps(2) !! the step, and the stable one of the elements, s
+    real(wp), intent(in) :: steps(2) !! time step, and stable step of the elements, s
     real(wp), intent(in) :: share(:)
     real(wp), intent(out) :: factor(:)
     type(spring_bound_t) :: bounds(size(factor))
@@ -160,7 +158,7 @@ contains
 
     whole = 0.0_wp
     where (share > 0.0_wp) whole = 1.0_wp/share
-    ! Each as if there were no other one.
+    ! Each interface alone.
     do i = 1, size(factor)
       call bound_springs(model%contacts(i:i), state%contact_mass, state%contacts(i:i), &
         whole(i:i), bounds(i:i))
@@ -182,8 +180,8 @@ contains
 
   contains
 
-    !> Whether the step is stable for all automatic interfaces with the whole of these penalties
-    !> (share 1), others as given.
+    !> Whether the step is stable with the full penalties (share 1) of automatic interfaces and the
+    !> fixed ones.
     pure logical function fits(factor)
       real(wp), intent(in) :: factor(:)
       type(spring_bound_t) :: bounds(size(factor))
@@ -195,7 +193,7 @@ contains
 
   end subroutine find_factors
 
-  !> Bounds with the whole of these penalties (share 1) for automatic interfaces, others as given.
+  !> Step bounds with the full penalties (share 1) of automatic interfaces and the fixed ones.
   pure subroutine bound_whole(model, state, share, factor, bounds)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> From a model to its state at time zero. Rigid bodies and nodes that move alike
-!> (*CONSTRAINED_NODE_SET): mass, centre and inertia from the lumped masses of their nodes, velocity
-!> from the momentum of these; the mass that contact feels, and the inverse masses that its energy
-!> law sees (doc/theory/contact.md, section 6.1). The log tells of masses what d3hsp does.
+!> State at time zero. Rigid bodies and coupled nodes (*CONSTRAINED_NODE_SET): mass, centre and
+!> inertia from the lumped masses of their nodes, velocity from their momentum; masses in contact,
+!> and inverse masses of the energy limit (doc/theory/contact.md, section 6.1). The log lists masses
+!> as d3hsp does.
 module start_m
   use automatic_penalty_m, only : set_automatic_penalties
   use block_state_m, only : block_state_t
@@ -28,17 +28,19 @@ module start_m
   use state_m, only : state_t
   implicit none
   private
-  public :: start_state, resume_contacts, start_rigids, weigh_body, weigh_contacts, check_added_mass
+  public :: start_state, resume_contacts, start_rigids, set_body_inertia, set_contact_masses, &
+    check_added_mass
 
 contains
 
-  !> Allocate and fill everything that the run changes.
+  !> Set up the state at time zero.
   subroutine start_state(model, log, state, error, remote, inside_tests)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
     type(state_t), intent(out) :: state
     type(error_t), allocatable, intent(out) :: error
-    type(remote_t), intent(inout), optional :: remote !! what other processes have; it is left alone
+    type(remote_t), intent(inout), optional :: remote !! remote nodes and slots; its arrays are
+                                                      !! moved into the state
     type(inside_tests_t), intent(inout), optional :: inside_tests !! of the first search
     integer :: known(2, 3), i, k
 
@@ -59,7 +61,7 @@ contains
       call check_added_mass(model, state%elements, error, log)
       if (allocated(error)) return
     end if
-    call start_common(model, state)
+    call start_coupled_nodes(model, state)
     call start_vectors(known, model%mesh%n_node, state%inverse_mass)
     do k = 1, size(known, 2)
       do i = known(1, k), known(2, k)
@@ -94,7 +96,7 @@ contains
     call start_contacts(model, log, state, error, inside_tests)
     if (allocated(error)) return
     state%outlines = model%contacts
-    call weigh_contacts(model, state)
+    call set_contact_masses(model, state)
     if (present(remote)) then
       do i = 1, size(state%contacts)
         state%contacts(i)%slave_penalty = remote%penalties(1, i)
@@ -111,7 +113,7 @@ contains
     end if
   end subroutine start_state
 
-  !> Memories of the interfaces.
+  !> Set up the memories of the interfaces.
   subroutine start_contacts(model, log, state, error, inside_tests)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
@@ -125,13 +127,14 @@ contains
       call start_contact(model%contacts(i), model, log, state%contacts(i), inside_tests)
       if (.not. is_tied(model%contacts(i)) .or. state%contacts(i)%tie_points%n > 0) cycle
       call raise(error, 'interface '//to_text(model%contacts(i)%id)//' ties nothing: none of its ' &
-        //to_text(state%contacts(i)%n_slave)//' slave nodes has the master within reach', &
+        //to_text(state%contacts(i)%n_slave)//' slave nodes lies within the search radius of the ' &
+        //'master', &
         status_input)
       return
     end do
   end subroutine start_contacts
 
-  !> Vectors of all nodes, zero where the process knows them.
+  !> Nodal vectors, zero at the nodes of this process.
   pure subroutine start_vectors(known, n_node, vectors)
     integer, intent(in) :: known(:, :)
     integer, intent(in) :: n_node
@@ -144,7 +147,7 @@ contains
     end do
   end subroutine start_vectors
 
-  !> Memories of the walls, where the deck has any; forces and works that histories ask for.
+  !> Set up the rigid walls, and forces and works for histories.
   subroutine start_works(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -177,7 +180,7 @@ contains
     end associate
   end subroutine start_works
 
-  !> After a restart: what interfaces make anew of the memory that has been read.
+  !> Restore what interfaces derive from the memory that was read.
   pure subroutine resume_contacts(state)
     type(state_t), intent(inout) :: state
     integer :: i
@@ -187,7 +190,7 @@ contains
     end do
   end subroutine resume_contacts
 
-  !> Set up all bodies; nodal masses and initial velocities are there already.
+  !> Set up the rigid bodies; nodal masses and initial velocities are set.
   subroutine start_rigids(model, log, state)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
@@ -198,8 +201,8 @@ contains
     allocate (state%rigids(size(model%rigids)))
     do i = 1, size(model%rigids)
       associate (body => model%rigids(i), rigid => state%rigids(i))
-        call weigh_body(model%mesh%coordinates(:, body%nodes), state%mass(body%nodes), rigid)
-        ! The velocity that keeps momentum, exactly where all nodes have one, and angular momentum.
+        call set_body_inertia(model%mesh%coordinates(:, body%nodes), state%mass(body%nodes), rigid)
+        ! Velocity from momentum and angular momentum; exact where all nodes have the same velocity.
         associate (mass => state%mass(body%nodes), v => state%motion(3:4, body%nodes))
           do k = 1, 2
             rigid%velocity(k) = v(k, 1) + sum(mass*(v(k, :) - v(k, 1)))/rigid%inertia(1)
@@ -208,7 +211,7 @@ contains
             - rigid%arms(2, :)*(v(1, :) - rigid%velocity(1))))/rigid%inertia(3)
         end associate
         if (body%has_velocity) rigid%velocity = body%velocity
-        ! What is fixed rests; what has a prescribed velocity from the start has its first value.
+        ! Fixed degrees of freedom are at rest, prescribed velocities start with their first value.
         where (body%is_fixed) rigid%velocity = 0.0_wp
         do k = 1, size(model%conditions%rigid_motions)
           associate (motion => model%conditions%rigid_motions(k))
@@ -229,9 +232,9 @@ contains
     call share_contact_mass(model, state)
   end subroutine start_rigids
 
-  !> Mass, centre and second moments of lumped masses.
-  pure subroutine weigh_body(places, mass, rigid)
-    real(wp), intent(in) :: places(:, :) !! (2, n) at time zero
+  !> Mass, centre and second moments of a set of lumped masses.
+  pure subroutine set_body_inertia(positions, mass, rigid)
+    real(wp), intent(in) :: positions(:, :) !! (2, n) at time zero
     real(wp), intent(in) :: mass(:)      !! (n)
     type(rigid_state_t), intent(inout) :: rigid
     integer :: k
@@ -239,26 +242,27 @@ contains
     rigid%inertia(1:2) = sum(mass)
     do k = 1, 2
       ! From the first node, so that digits are kept far from the origin.
-      rigid%centre(k) = places(k, 1) + sum(mass*(places(k, :) - places(k, 1)))/rigid%inertia(1)
+      rigid%centre(k) = positions(k, 1) + sum(mass*(positions(k, :) - positions(k, &
+        1)))/rigid%inertia(1)
     end do
-    rigid%arms = places - spread(rigid%centre, 2, size(mass))
+    rigid%arms = positions - spread(rigid%centre, 2, size(mass))
     rigid%second = [sum(mass*rigid%arms(1, :)**2), sum(mass*rigid%arms(2, :)**2), &
       sum(mass*rigid%arms(1, :)*rigid%arms(2, :))]
     rigid%inertia(3) = rigid%second(1) + rigid%second(2)
-  end subroutine weigh_body
+  end subroutine set_body_inertia
 
-  !> The mass of a body is shared among its nodes that contact can touch, in proportion to their
-  !> lumped masses and so that no motion of the body gives these nodes more kinetic energy than the
-  !> body has, by the largest eigenvalue of their inertia over the body's: limits of the step found
-  !> with these masses hold for the body (doc/theory/rigid_bodies.md, section 4). A body held in one
-  !> direction counts as free in both.
+  !> Distribute the mass of a rigid body over its nodes at contact surfaces, in proportion to their
+  !> lumped masses, such that no motion of the body gives these nodes more kinetic energy than the
+  !> body, by the largest eigenvalue of their inertia over the body's: step limits found with these
+  !> masses hold for the body (doc/theory/rigid_bodies.md, section 4). A body fixed in one direction
+  !> counts as free in both.
   subroutine share_contact_mass(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     real(wp), parameter :: as_good_as_none = 1.0e-30_wp
     logical, allocatable :: touched(:)
     integer, allocatable :: list(:)
-    real(wp), allocatable :: mass(:), arms(:, :) !! of the nodes that can be touched
+    real(wp), allocatable :: mass(:), arms(:, :) !! of the nodes at contact surfaces
     real(wp) :: shift, turn, mixed, share
     logical :: held(3)
     integer :: i, k, n
@@ -288,7 +292,7 @@ contains
     end do
   end subroutine share_contact_mass
 
-  !> Degrees of freedom of a body that no force moves during the whole run.
+  !> Degrees of freedom of a rigid body that are fixed or prescribed during the whole run.
   pure function is_held(model, i_body) result(held)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_body
@@ -304,8 +308,8 @@ contains
     end do
   end function is_held
 
-  !> Nodes that move alike: their mean over the masses, so that momentum stays.
-  subroutine start_common(model, state)
+  !> Set the velocity of coupled nodes to their mean over the masses, which keeps the momentum.
+  subroutine start_coupled_nodes(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     real(wp) :: first
@@ -322,12 +326,12 @@ contains
         end do
       end associate
     end do
-  end subroutine start_common
+  end subroutine start_coupled_nodes
 
-  !> 1/m of the nodes of all interfaces, 0 where the motion is held or prescribed. A node of a rigid
-  !> body has the mass that contact feels there, with which no force does more to it than to the
-  !> body; 0 where the body can not turn and does not move in that direction during the whole run.
-  subroutine weigh_contacts(model, state)
+  !> Set the inverse masses of the nodes of all interfaces, 0 where fixed or prescribed. A node of a
+  !> rigid body has its mass in contact, with which no force has a larger effect than on the body; 0
+  !> where the body cannot rotate nor move in that direction during the whole run.
+  subroutine set_contact_masses(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     real(wp), allocatable :: inverse(:, :)
@@ -337,8 +341,7 @@ contains
     if (size(state%contacts) == 0) return
     allocate (inverse(2, model%layout%n_special))
     inverse = state%inverse_mass(:, :model%layout%n_special)
-    ! Nodes that move alike: their own mass, the least that a force on one of them moves. Nodes that
-    ! have lost theirs with their last element have no contact any more.
+    ! Coupled nodes: their own mass as a lower bound. Nodes without elements have no contact.
     if (allocated(model%conditions%common_motions)) then
       do i = 1, size(model%conditions%common_motions)
         associate (common => model%conditions%common_motions(i))
@@ -364,15 +367,16 @@ contains
     do i = 1, size(state%contacts)
       if (.not. state%contacts(i)%has%limit) cycle
       associate (limit => state%contacts(i)%limit)
-        ! The bound of the forces before was formed with the masses of before.
+        ! The previous bound was formed with the previous masses.
         if (any(abs(limit%inverse_mass - inverse(:, state%contacts(i)%nodes)) > 0.0_wp)) &
           limit%recoil = huge(1.0_wp)
         limit%inverse_mass = inverse(:, state%contacts(i)%nodes)
       end associate
     end do
-  end subroutine weigh_contacts
+  end subroutine set_contact_masses
 
-  !> Elements, mass and centre of mass of each part and of the whole, per unit depth or per radian.
+  !> Log elements, mass and centre of mass of each part and of the whole, per unit depth or per
+  !> radian.
   subroutine log_masses(model, log)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
@@ -410,7 +414,7 @@ contains
       //' of the elements are triangles')
   end subroutine log_masses
 
-  !> Elements, mass and centre in words.
+  !> Elements, mass and centre of mass in words.
   pure function mass_text(n, sums) result(text)
     integer, intent(in) :: n
     real(wp), intent(in) :: sums(3)
@@ -421,7 +425,7 @@ contains
       //to_text(sums(3)/sums(1))
   end function mass_text
 
-  !> An error where the added mass is more than ENDMAS allows; the log, if given, is told of it.
+  !> Stop where the added mass exceeds ENDMAS; with `log` report the added mass.
   subroutine check_added_mass(model, elements, error, log)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements

@@ -180,7 +180,7 @@ def check_roughness(run):
         jumps += np.sum((force[c] - force[b] - r * (force[b] - force[a])) ** 2) / (1 + (1 + r) ** 2 + r ** 2)
         forces += np.sum(force[c] ** 2)
     log = (result.folder / f"{result.job}.log").read_text()
-    told = float(re.search(r"the force is rough by ([\d.]+) %", log)[1])
+    told = float(re.search(r"noise of the force ([\d.]+) %", log)[1])
     run.check("roughness of the force in the summary, two series of instants", told,
               100.0 * np.sqrt(jumps / forces))
 

@@ -110,7 +110,7 @@ def check_sliding_under(run, kind):
         run.check(f"{label}: contact has ended", force["n_active"][-1], 0)
         run.check(f"{label}: energy created / kinetic energy", created / start, 0.005 * 1.01)
         run.true(f"{label}: the log warns of the energy that limited forces withhold",
-                 ", contact forces limited, so" in " ".join((result.folder
+                 ", contact forces limited to" in " ".join((result.folder
                                                                         / f"{result.job}.log").read_text().split()))
 
 

@@ -146,7 +146,7 @@ class Impact:
         self.run.check(f"{name}: lowest velocity as written", velocity[lowest], self.velocity - pull_back(self.limit))
         self.run.check(f"{name}: what is left flies on", velocity[after + 40:].max(), self.velocity)
         self.run.true(f"{name}: the log tells of it",
-                      "points fail: the first" in (result.folder / f"{result.job}.log").read_text())
+                      "first failed point" in (result.folder / f"{result.job}.log").read_text())
 
 
 def check_spall(run):

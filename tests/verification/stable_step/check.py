@@ -182,7 +182,7 @@ def check_mixed(run):
         result = run.program(rubber_and_steel(*options, **more), name=name)
         return result.table("glstat"), " ".join((result.folder / f"{result.job}.log").read_text().split())
 
-    lowered = "is of soft and stiff materials"
+    lowered = "has soft and stiff materials"
     for place, form, with_itself in (("plane", 13, False), ("round", 15, False), ("plane, with itself", 13, True)):
         stem = "mixed_" + place.replace(", ", "_").replace(" ", "_")
         found, text = go(stem, 2, form, with_itself)

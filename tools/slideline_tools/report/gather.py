@@ -19,7 +19,7 @@ from slideline_tools.histories import History
 from slideline_tools.program import find_program
 from slideline_tools.results import Results
 
-GOES_ON = "goes on from the restart file"
+GOES_ON = "restart from the restart file"
 #: what the log tells where there are no results
 IN_LOG = {"title": r"^title: (.*)", "deck": r"^deck: (.*)", "version": r"^slideline (\S+)",
           "options": r"^command line: (.*)", "source": r"^slideline .*, source (\S+)\)",

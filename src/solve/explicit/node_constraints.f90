@@ -1,29 +1,28 @@
 ! SPDX-License-Identifier: MIT
-!> Special nodes that something holds which no inverse mass of x or y can express: skew supports,
-!> sets of nodes that move alike, and rigid walls, whose impact is perfectly plastic. A node that
-!> would pass a wall in the step ahead gets the normal velocity that takes it to the wall (one
-!> behind it: none), and the wall the force that this takes at t(n). Tangentially the wall holds it
-!> back with what stops it, at most the coefficient of friction times that force.
-module held_nodes_m
-  use common_motion_m, only : common_drive
+!> Constraints of special nodes that no inverse mass of x or y expresses: skew supports, coupled
+!> nodes, and rigid walls with perfectly plastic impact. A node that would cross a wall in the
+!> coming step gets the normal velocity that takes it to the wall (zero if it is behind), and the
+!> wall the corresponding force at t(n). The tangential force stops the node, at most friction
+!> coefficient times normal force.
+module node_constraints_m
+  use coupled_nodes_m, only : coupled_acceleration
   use kinds_m, only : wp
   use model_m, only : model_t
-  use node_motion_m, only : leap_t, look_ahead
+  use node_motion_m, only : leap_t, predict_velocity
   use state_m, only : state_t
   use walls_m, only : wall_t, wall_distance, wall_tangent, friction_sticks
   implicit none
   private
-  public :: hold_skew_nodes, move_common, hold_nodes, count_walls, wall_work_ahead
+  public :: apply_skew_supports, move_coupled_nodes, apply_walls, add_wall_work, wall_work_ahead
 
-  !> Rounds over the walls that one node meets (two in a corner settle at once where
-  !> they are at right angles).
+  !> Largest number of iterations over the walls at one node (two walls at right angles need one).
   integer, parameter :: most_rounds = 40
 
 contains
 
   !> Add the forces of skew supports to the special nodes first .. last, whose other forces are
-  !> known, before they move: v(n+1/2) has no part along the normal.
-  subroutine hold_skew_nodes(model, leap, first, last, state)
+  !> known, before they move: v(n+1/2) has no component along the normal.
+  subroutine apply_skew_supports(model, leap, first, last, state)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
     integer, intent(in) :: first, last
@@ -35,17 +34,16 @@ contains
       associate (node => model%conditions%skew_supports(i)%node, &
         normal => model%conditions%skew_supports(i)%normal)
         if (node < first .or. node > last) cycle
-        call look_ahead(leap, state, node, mobility, velocity)
+        call predict_velocity(leap, state, node, mobility, velocity)
         gain = dot_product(normal**2, mobility)
         if (gain > 0.0_wp) state%force_special(:, node) = state%force_special(:, node) &
           - dot_product(normal, velocity)/gain*normal
       end associate
     end do
-  end subroutine hold_skew_nodes
+  end subroutine apply_skew_supports
 
-  !> Put sets of nodes that move alike where the sum of their forces takes them; they have moved as
-  !> nodes without force.
-  subroutine move_common(model, leap, damping, before, state)
+  !> Move coupled nodes by the sum of their forces; they have moved as nodes without force.
+  subroutine move_coupled_nodes(model, leap, damping, before, state)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
     real(wp), intent(in) :: damping(2)     !! D per direction
@@ -58,7 +56,7 @@ contains
       associate (nodes => model%conditions%common_motions(i)%nodes)
         do k = 1, 2
           if (.not. model%conditions%common_motions(i)%along(k)) cycle
-          call common_drive(model, i, k, state, damping, push, rate)
+          call coupled_acceleration(model, i, k, state, damping, push, rate)
           next = ((1.0_wp - 0.5_wp*rate*leap%mean)*before(k, i) + leap%mean*push) &
             /(1.0_wp + 0.5_wp*rate*leap%mean)
           state%motion(k, nodes) = state%motion(k, nodes) + leap%dt*(next &
@@ -67,11 +65,11 @@ contains
         end do
       end associate
     end do
-  end subroutine move_common
+  end subroutine move_coupled_nodes
 
-  !> Add the forces of all walls to the special nodes first .. last, whose other forces are known,
-  !> before they move.
-  subroutine hold_nodes(model, leap, first, last, state)
+  !> Add the forces of all rigid walls to the special nodes first .. last, whose other forces are
+  !> known, before they move.
+  subroutine apply_walls(model, leap, first, last, state)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
     integer, intent(in) :: first, last
@@ -96,19 +94,20 @@ contains
         settles = .false.
       end do
       if (n_seen == 0) cycle
-      call look_ahead(leap, state, node, mobility, velocity)
+      call predict_velocity(leap, state, node, mobility, velocity)
       do round = 1, most_rounds
         most = 0.0_wp
         do i = 1, size(model%walls)
           k = model%walls(i)%node_index(node)
           if (k == 0) cycle
           associate (wall => model%walls(i), force => state%walls(i)%force(k))
-            more = missing_force(wall, state%time, leap%dt, model%mesh%coordinates(:, node), &
-              state%motion(1:2, node), velocity, mobility, force)
+            more = wall_force_increment(wall, state%time, leap%dt, model%mesh%coordinates(:, &
+              node), state%motion(1:2, node), velocity, mobility, force)
             force = force + more
             call push(more, wall%normal, force)
             if (.not. wall%friction > 0.0_wp) cycle
-            more = missing_friction(wall, velocity, mobility, force, state%walls(i)%friction(k))
+            more = wall_friction_increment(wall, velocity, mobility, force, &
+              state%walls(i)%friction(k))
             state%walls(i)%friction(k) = state%walls(i)%friction(k) + more
             call push(more, wall_tangent(wall), force)
           end associate
@@ -119,21 +118,22 @@ contains
 
   contains
 
-    !> Push the node by what a force lacked.
+    !> Add a force increment to the node.
     subroutine push(more, along, force)
-      real(wp), intent(in) :: more, along(2), force !! the last one along the normal of the wall
+      real(wp), intent(in) :: more, along(2), force !! increment, direction, and normal force of the
+                                                    !! wall
 
       velocity = velocity + mobility*(more*along)
       state%force_special(:, node) = state%force_special(:, node) + more*along
       most = max(most, abs(more) - 1.0e-14_wp*force)
     end subroutine push
 
-  end subroutine hold_nodes
+  end subroutine apply_walls
 
-  !> What the force of one wall lacks so that the node does not pass; never so
-  !> negative that the wall pulls.
-  pure function missing_force(wall, time, dt, coordinates, displacement, velocity, mobility, &
-      force) result(more)
+  !> Increment of the normal force of a wall that keeps the node from crossing it; the total force
+  !> stays compressive.
+  pure function wall_force_increment(wall, time, dt, coordinates, displacement, velocity, &
+    mobility, force) result(more)
     type(wall_t), intent(in) :: wall
     real(wp), intent(in) :: time, dt
     real(wp), intent(in) :: coordinates(2), displacement(2)
@@ -148,10 +148,10 @@ contains
     if (.not. gain > 0.0_wp .or. time < wall%birth .or. time >= wall%death) return
     least = -max(0.0_wp, wall_distance(wall, coordinates, displacement))/dt
     more = max((least - dot_product(wall%normal, velocity))/gain, -force)
-  end function missing_force
+  end function wall_force_increment
 
-  !> What the friction of one wall lacks so that the node stops, as far as its force allows.
-  pure function missing_friction(wall, velocity, mobility, force, friction) result(more)
+  !> Increment of the friction of a wall that stops the node, limited by the normal force.
+  pure function wall_friction_increment(wall, velocity, mobility, force, friction) result(more)
     type(wall_t), intent(in) :: wall
     real(wp), intent(in) :: velocity(2)  !! with the forces so far
     real(wp), intent(in) :: mobility(2)  !! velocity from a force of 1
@@ -167,15 +167,14 @@ contains
     more = -dot_product(tangent, velocity)/gain
     if (wall%friction < friction_sticks) more = max(-wall%friction*force - friction, &
       min(more, wall%friction*force - friction))
-  end function missing_friction
+  end function wall_friction_increment
 
-  !> Impulse and work of the walls over the half steps before and after the instant. Together they
-  !> do the work F h (v(n-1/2) + v(n+1/2))/2, which is the change of kinetic energy that F makes,
-  !> whatever the two steps are; it counts as external, but for that of friction, which is part of
-  !> the energy account by itself.
-  subroutine count_walls(model, due, state)
+  !> Add impulse and work of the walls over the half steps before and after t(n). Together they are
+  !> F h (v(n-1/2) + v(n+1/2))/2, the change of kinetic energy by F for any two steps. It counts as
+  !> external work, except for friction, which has its own entry in the energy balance.
+  subroutine add_wall_work(model, due, state)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: due(2) !! the half steps before and after the instant
+    logical, intent(in) :: due(2) !! the half steps before and after t(n)
     type(state_t), intent(inout) :: state
     real(wp) :: work, length
     integer :: i
@@ -198,11 +197,11 @@ contains
 
   contains
 
-    !> Of forces on the nodes of a wall, from their velocities before.
+    !> Work of forces along a direction on the nodes of a wall.
     pure function work_along(direction, nodes, force, speed) result(work)
       real(wp), intent(in) :: direction(2)
       integer, intent(in) :: nodes(:)
-      real(wp), intent(in) :: force(:), speed(:)
+      real(wp), intent(in) :: force(:), speed(:) !! forces, and velocities before them
       real(wp) :: work
       integer :: k
 
@@ -210,14 +209,14 @@ contains
       do k = 1, size(nodes)
         if (.not. abs(force(k)) > 0.0_wp) cycle
         if (due(1)) work = work + force(k)*0.5_wp*state%dt_before*speed(k)
-        if (due(2)) work = work + force(k)*way_ahead(state, speed(k), &
+        if (due(2)) work = work + force(k)*path_ahead(state, speed(k), &
           dot_product(direction, state%motion(3:4, nodes(k))))
       end do
     end function work_along
 
-  end subroutine count_walls
+  end subroutine add_wall_work
 
-  !> What of that work on one node belongs to the half step after the instant, friction included.
+  !> Part of the wall work on one node that belongs to the half step after t(n), friction included.
   pure function wall_work_ahead(model, node, state) result(work)
     type(model_t), intent(in) :: model
     integer, intent(in) :: node
@@ -230,21 +229,21 @@ contains
       k = model%walls(i)%node_index(node)
       if (k == 0) cycle
       associate (wall => model%walls(i), memory => state%walls(i))
-        if (memory%force(k) > 0.0_wp) work = work + memory%force(k)*way_ahead(state, &
+        if (memory%force(k) > 0.0_wp) work = work + memory%force(k)*path_ahead(state, &
           memory%speed(k), dot_product(wall%normal, state%motion(3:4, node)))
-        if (size(memory%friction) > 0) work = work + memory%friction(k)*way_ahead(state, &
+        if (size(memory%friction) > 0) work = work + memory%friction(k)*path_ahead(state, &
           memory%slip_speed(k), dot_product(wall_tangent(wall), state%motion(3:4, node)))
       end associate
     end do
   end function wall_work_ahead
 
-  !> Way of a node that counts for the half step ahead.
-  pure function way_ahead(state, speed, next) result(way)
+  !> Displacement of a node that counts for the half step after t(n).
+  pure function path_ahead(state, speed, next) result(way)
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: speed, next !! v(n-1/2), v(n+1/2)
     real(wp) :: way
 
     way = 0.25_wp*(state%dt_before + state%dt)*(speed + next) - 0.5_wp*state%dt_before*speed
-  end function way_ahead
+  end function path_ahead
 
-end module held_nodes_m
+end module node_constraints_m

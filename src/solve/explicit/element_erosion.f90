@@ -1,58 +1,59 @@
 ! SPDX-License-Identifier: MIT
-!> Elements that leave the mesh: what they take along, their nodes that nothing holds any more, and
-!> surfaces of interfaces, which follow them. Points that fail: the log tells the first, then each
-!> tenfold of what was told, and all at the end. One thread counts the chunks once a cycle, in
-!> models whose points may fail.
-module element_losses_m
-  use block_state_m, only : stays
+!> Erosion in the explicit cycle: eroded energies, nodes without elements, and surfaces of
+!> interfaces after erosion. Failed integration points: the log reports the first, then each tenfold
+!> number, and the total at the end. One thread counts the chunks once a cycle in models whose
+!> points may fail.
+module element_erosion_m
+  use block_state_m, only : intact
   use contact_memory_m, only : prepare_contact, renew_contact, close_contact
   use contacts_m, only : contact_t
-  use element_state_m, only : settle_erosion, count_points, first_failed
+  use element_state_m, only : update_erosion, count_points, first_failed
   use exposed_quads_m, only : find_exposed
-  use held_nodes_m, only : wall_work_ahead
+  use node_constraints_m, only : wall_work_ahead
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
-  use node_motion_m, only : leap_t, find_factors
-  use start_m, only : weigh_contacts
+  use node_motion_m, only : leap_t, motion_factors
+  use start_m, only : set_contact_masses
   use state_m, only : state_t
   use surface_building_m, only : remaining_surface
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: settle_elements, release_nodes, report_erosion, failure_log_t, follow_failures, &
-    report_failures, follow_outlines, resume_outlines
+  public :: finish_erosion, release_free_nodes, report_erosion, failure_log_t, update_failures, &
+    report_failures, update_outlines, restore_outlines
 
-  !> What has been told.
+  !> Failures that have been reported.
   type :: failure_log_t
-    logical :: is_restart = .false.     !! the run goes on: what had failed before was told then
-    integer :: n_reported = 0           !! points
-    character(:), allocatable :: first  !! where and when the first one failed
+    logical :: is_restart = .false.     !! in a restart: failures of the run before have been
+                                        !! reported
+    integer :: n_reported = 0           !! failed points
+    character(:), allocatable :: first  !! place and time of the first failure
   end type failure_log_t
 
 contains
 
-  !> Elements that have left in this cycle, once all of its forces are known.
-  subroutine settle_elements(model, state, log, freed)
+  !> Finish the erosion of this cycle, once all its forces are known.
+  subroutine finish_erosion(model, state, log, freed)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(log_t), intent(inout) :: log
-    integer, allocatable, intent(out) :: freed(:)
+    integer, allocatable, intent(out) :: freed(:) !! nodes without an element; not allocated without
+                                                  !! erosion in this cycle
     logical :: is_first
 
     is_first = sum(state%elements%erosion%n_eroded) == 0
-    call settle_erosion(model, state%time, state%elements%erosion, freed)
-    if (is_first .and. allocated(freed)) call write_log(log, 'the first elements ('// &
-      to_text(sum(state%elements%erosion%n_eroded))//') leave the mesh at cycle ' &
+    call update_erosion(model, state%time, state%elements%erosion, freed)
+    if (is_first .and. allocated(freed)) call write_log(log, 'first erosion: '// &
+      to_text(sum(state%elements%erosion%n_eroded))//' element(s) at cycle ' &
       //to_text(state%cycle)//', time '//to_text(state%time))
-  end subroutine settle_elements
+  end subroutine finish_erosion
 
-  !> Nodes without an element stop where they are, after the motion of the cycle: their kinetic
-  !> energy, v(n-1/2).m v(n+1/2)/2, leaves the account, and their mass moves nothing any more. No
-  !> element has pushed them in this cycle; contact has, and does no work on them any more. Walls
-  !> and prescribed motion have done theirs over the half step ahead, too.
-  subroutine release_nodes(model, leap, freed, state)
+  !> Stop nodes without an element after the motion of the cycle. Their kinetic energy v(n-1/2).m
+  !> v(n+1/2)/2 becomes eroded energy, and their mass no longer counts. Work of walls and prescribed
+  !> motion over the half step after t(n) is included.
+  subroutine release_free_nodes(model, leap, freed, state)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap     !! of this cycle
     integer, intent(in) :: freed(:)
@@ -61,11 +62,11 @@ contains
     logical :: is_led(2)
     integer :: i, k
 
-    associate (took => state%elements%erosion%took)
+    associate (removed_energy => state%elements%erosion%removed_energy)
       do i = 1, size(freed)
         associate (node => freed(i), mass => state%mass(freed(i)))
           after = state%motion(3:4, node)
-          call find_factors(leap, state, node, half, keep)
+          call motion_factors(leap, state, node, half, keep)
           is_led = .not. state%inverse_mass(:, node) > 0.0_wp
           push = merge(leap%body, 0.0_wp, state%inverse_mass(:, node) > 0.0_wp)
           if (node <= model%layout%n_special) push = push + state%inverse_mass(:, node) &
@@ -78,11 +79,12 @@ contains
               0.0_wp, is_led)))
             before = merge(after, before, is_led)
           end if
-          ! What leads a node has paid for the half step ahead.
+          ! Prescribed motion has done its work over the half step ahead.
           state%external_work = state%external_work + 0.5_wp*state%dt*mass*sum(merge(leap%body &
             *after, 0.0_wp, is_led))
-          took(1) = took(1) + 0.5_wp*mass*sum(before*after)
-          if (allocated(state%walls)) took(1) = took(1) + wall_work_ahead(model, node, state)
+          removed_energy(1) = removed_energy(1) + 0.5_wp*mass*sum(before*after)
+          if (allocated(state%walls)) removed_energy(1) = removed_energy(1) + &
+            wall_work_ahead(model, node, state)
           state%mass(node) = 0.0_wp
           state%inverse_mass(:, node) = 0.0_wp
           state%motion(3:4, node) = merge(after, 0.0_wp, is_led)
@@ -90,22 +92,24 @@ contains
       end do
     end associate
     if (.not. allocated(model%conditions%common_motions)) return
-    ! Nodes that move alike and have no mass left stand still from here on: the half step ahead for
-    ! which their loads would have paid is not theirs any more.
+    ! A set of coupled nodes without mass stops; the work of its loads over the half step ahead is
+    ! taken back.
     do i = 1, size(model%conditions%common_motions)
-      associate (set => model%conditions%common_motions(i), took => state%elements%erosion%took(1))
+      associate (set => model%conditions%common_motions(i), &
+        removed_energy => state%elements%erosion%removed_energy(1))
         if (any(state%mass(set%nodes) > 0.0_wp)) cycle
         do k = 1, 2
           if (.not. set%along(k)) cycle
-          took = took - 0.5_wp*state%dt*state%motion(2 + k, set%nodes(1)) &
+          removed_energy = removed_energy - 0.5_wp*state%dt*state%motion(2 + k, set%nodes(1)) &
             *sum(state%force_special(k, set%nodes))
           state%motion(2 + k, set%nodes) = 0.0_wp
         end do
       end associate
     end do
-  end subroutine release_nodes
+  end subroutine release_free_nodes
 
-  !> At the end of a run: how many elements have left, when first, and what they took along.
+  !> Report at the end of a run the number of eroded elements by part, the time of the first erosion
+  !> and the eroded energies.
   subroutine report_erosion(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -114,13 +118,15 @@ contains
 
     associate (erosion => state%elements%erosion)
       if (sum(erosion%n_eroded) == 0) then
-        call write_log(log, 'no element has left the mesh')
+        call write_log(log, 'no element has eroded')
         return
       end if
-      call write_log(log, to_text(sum(erosion%n_eroded))//' elements have left the mesh, the ' &
-        //'first at time '//to_text(erosion%first_time)//'; energies that went with them: ' &
-        //'kinetic '//to_text(erosion%took(1))//', internal '//to_text(erosion%took(2)) &
-        //', hourglass '//to_text(erosion%took(3))//', contact springs '//to_text(erosion%took(4)))
+      associate (energy => erosion%removed_energy)
+        call write_log(log, 'eroded elements: '//to_text(sum(erosion%n_eroded))//', the first at ' &
+          //'time '//to_text(erosion%first_time)//'; eroded energy: kinetic ' &
+          //to_text(energy(1))//', internal '//to_text(energy(2))//', hourglass ' &
+          //to_text(energy(3))//', contact springs '//to_text(energy(4)))
+      end associate
       do i = 1, size(erosion%n_eroded)
         if (erosion%n_eroded(i) > 0) call write_log(log, '  part '//to_text(model%parts(i)%id) &
           //': '//to_text(erosion%n_eroded(i)))
@@ -128,8 +134,8 @@ contains
     end associate
   end subroutine report_erosion
 
-  !> Look at the cycle just done.
-  subroutine follow_failures(model, state, failures, log)
+  !> Update the count of failed points and report the first and each tenfold number.
+  subroutine update_failures(model, state, failures, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(failure_log_t), intent(inout) :: failures
@@ -151,16 +157,16 @@ contains
           //to_text(model%parts(part)%id)//' at cycle '//to_text(state%cycle)//', time ' &
           //to_text(state%time)
       end associate
-      call write_log(log, 'points fail: the first '//failures%first)
+      call write_log(log, 'first failed point '//failures%first)
     else if (failures%n_reported > 0 .and. n/10 >= failures%n_reported) then
-      call write_log(log, 'points fail: '//to_text(n)//' of ' &
+      call write_log(log, 'failed points: '//to_text(n)//' of ' &
         //to_text(count_points(model, state%elements))//' by cycle '//to_text(state%cycle) &
         //', time '//to_text(state%time))
       failures%n_reported = n
     end if
-  end subroutine follow_failures
+  end subroutine update_failures
 
-  !> The summary.
+  !> Report the number of failed points at the end of a run.
   subroutine report_failures(model, state, failures, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -176,24 +182,23 @@ contains
     end if
   end subroutine report_failures
 
-  !> After elements have left: interfaces whose surfaces have lost some, or came to light, go on
-  !> with what is left, in the order of the deck. Their springs that are not there any more are
-  !> booked as eroded.
-  subroutine follow_outlines(model, has_lost, state)
+  !> Update interfaces whose surfaces lost elements or were newly exposed, in the order of the deck.
+  !> Energy of the springs that were removed becomes eroded energy.
+  subroutine update_outlines(model, has_lost, state)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: has_lost(:) !! (n_part) elements in this cycle
+    logical, intent(in) :: has_lost(:) !! (n_part) the part lost elements in this cycle
     type(state_t), intent(inout) :: state
     type(contact_t), allocatable :: previous
     logical, allocatable :: is_left(:)
     real(wp) :: lost
     integer :: i
 
-    is_left = state%elements%erosion%status(model%layout%element_slot) == stays
-    call expose_elements(model, is_left, state)
+    is_left = state%elements%erosion%status(model%layout%element_slot) == intact
+    call update_exposed_quads(model, is_left, state)
     do i = 1, size(state%outlines)
       if (.not. (loses(state%outlines(i)%slave) .or. loses(state%outlines(i)%master))) cycle
       previous = state%outlines(i)
-      ! What is no node of the interface any more feels no force of it.
+      ! Nodes that leave the interface have no contact force.
       state%force_special(:, state%contacts(i)%nodes) = 0.0_wp
       call set_remaining_surfaces(model, i, is_left, state%outlines(i))
       if (state%outlines(i)%birth >= huge(1.0_wp)) then
@@ -203,13 +208,13 @@ contains
         call renew_contact(previous, state%outlines(i), model, state%motion, state%contacts(i), &
           lost)
       end if
-      state%elements%erosion%took(4) = state%elements%erosion%took(4) + lost
+      state%elements%erosion%removed_energy(4) = state%elements%erosion%removed_energy(4) + lost
     end do
-    call weigh_contacts(model, state)
+    call set_contact_masses(model, state)
 
   contains
 
-    !> Whether a surface is another one now.
+    !> Whether a surface has changed.
     function loses(surface)
       type(surface_t), intent(in) :: surface
       logical :: loses
@@ -221,12 +226,12 @@ contains
       end if
     end function loses
 
-  end subroutine follow_outlines
+  end subroutine update_outlines
 
-  !> Quads whose neighbours have left.
-  subroutine expose_elements(model, is_left, state)
+  !> Update the mass shares of quads whose neighbours have eroded.
+  subroutine update_exposed_quads(model, is_left, state)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: is_left(:)  !! (n_element)
+    logical, intent(in) :: is_left(:)  !! (n_element) not eroded
     type(state_t), intent(inout) :: state
     real(wp), allocatable :: shares(:, :)
 
@@ -237,10 +242,10 @@ contains
     end if
     state%elements%mass_shares = 0.0_wp
     state%elements%mass_shares(:, model%layout%element_slot) = shares
-  end subroutine expose_elements
+  end subroutine update_exposed_quads
 
-  !> The interface that is left of one of the deck; that of the deck, never born, where a side has
-  !> nothing left.
+  !> Set the surfaces of an interface without eroded elements. Where a side has no segment left, the
+  !> surfaces of the deck and an infinite birth time.
   subroutine set_remaining_surfaces(model, i, is_left, contact)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
@@ -260,20 +265,20 @@ contains
     end if
   end subroutine set_remaining_surfaces
 
-  !> Before a state is read in which elements have left: interfaces get the shapes that they had.
-  subroutine resume_outlines(model, state)
+  !> Restore the surfaces of interfaces before a state with eroded elements is read.
+  subroutine restore_outlines(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     logical, allocatable :: is_left(:)
     integer :: i
 
-    is_left = state%elements%erosion%status(model%layout%element_slot) == stays
+    is_left = state%elements%erosion%status(model%layout%element_slot) == intact
     if (all(is_left)) return
-    call expose_elements(model, is_left, state)
+    call update_exposed_quads(model, is_left, state)
     do i = 1, size(state%outlines)
       call set_remaining_surfaces(model, i, is_left, state%outlines(i))
       call prepare_contact(state%outlines(i), model, state%contacts(i))
     end do
-  end subroutine resume_outlines
+  end subroutine restore_outlines
 
-end module element_losses_m
+end module element_erosion_m

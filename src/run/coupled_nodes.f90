@@ -1,18 +1,19 @@
 ! SPDX-License-Identifier: MIT
-!> Nodes that move alike (*CONSTRAINED_NODE_SET): all of them have the acceleration of the sum of
-!> their forces over the sum of their masses.
-module common_motion_m
+!> Coupled nodes (*CONSTRAINED_NODE_SET): all nodes of a set have the acceleration sum of forces
+!> over sum of masses.
+module coupled_nodes_m
   use kinds_m, only : wp
   use model_m, only : model_t
   use state_m, only : state_t
   implicit none
   private
-  public :: common_drive, common_velocity, fill_common
+  public :: coupled_acceleration, coupled_velocity, fill_coupled_nodes
 
 contains
 
-  !> Velocity of one set: nodes that have lost their mass with their last element stand still.
-  pure function common_velocity(model, i_set, state) result(velocity)
+  !> Velocity of a set. Nodes that lost their mass with their last element are at rest and do not
+  !> count.
+  pure function coupled_velocity(model, i_set, state) result(velocity)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_set
     type(state_t), intent(in) :: state
@@ -27,11 +28,11 @@ contains
         return
       end do
     end associate
-  end function common_velocity
+  end function coupled_velocity
 
-  !> Of one set along one direction: acceleration by all but damping, and the mean D. A set without
-  !> mass has none.
-  pure subroutine common_drive(model, i_set, k, state, damping, push, rate)
+  !> Acceleration of a set along one direction without damping, and the mass-weighted mean of D.
+  !> Both are zero for a set without mass.
+  pure subroutine coupled_acceleration(model, i_set, k, state, damping, push, rate)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_set, k
     type(state_t), intent(in) :: state
@@ -59,10 +60,10 @@ contains
     push = push/mass + state%body_acceleration(k)
     rate = rate/mass
     if (.not. allocated(state%node_damping)) rate = damping(k)
-  end subroutine common_drive
+  end subroutine coupled_acceleration
 
-  !> Acceleration and velocity of the present instant.
-  pure subroutine fill_common(model, state, damping, velocity, acceleration)
+  !> Acceleration and velocity of coupled nodes at t(n).
+  pure subroutine fill_coupled_nodes(model, state, damping, velocity, acceleration)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: damping(2)
@@ -71,17 +72,17 @@ contains
     integer :: i, k
 
     do i = 1, size(model%conditions%common_motions)
-      before = common_velocity(model, i, state)
+      before = coupled_velocity(model, i, state)
       associate (nodes => model%conditions%common_motions(i)%nodes)
         do k = 1, 2
           if (.not. model%conditions%common_motions(i)%along(k)) cycle
-          call common_drive(model, i, k, state, damping, push, rate)
+          call coupled_acceleration(model, i, k, state, damping, push, rate)
           a = (push - rate*before(k))/(1.0_wp + 0.5_wp*rate*state%dt_before)
           acceleration(k, nodes) = a
           velocity(k, nodes) = before(k) + 0.5_wp*state%dt_before*a
         end do
       end associate
     end do
-  end subroutine fill_common
+  end subroutine fill_coupled_nodes
 
-end module common_motion_m
+end module coupled_nodes_m
