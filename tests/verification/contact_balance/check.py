@@ -117,7 +117,7 @@ def check_corners(run):
                   np.max(springs["stored"] - springs["energy"]) / start, 0.02)
         run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0)
         first, in_all, limited = told(result, FIRST), told(result, IN_ALL), told(result, LIMITED)
-        run.true(f"{name}: nothing is told to be made", "made" not in [m[4] for m in first] + [m[2] for m in in_all])
+        run.true(f"{name}: nothing is told to be made", "created" not in [m[4] for m in first] + [m[2] for m in in_all])
         if expected == "limited":
             run.true(f"{name}: the summary tells of limited forces",
                      bool(limited) and 0 < int(limited[-1][2]) < int(limited[-1][3]) and 0.0 <= float(limited[-1][4]) < 1.0)
@@ -148,8 +148,8 @@ def check_lives(run):
                       0.5 * 2.0 * 0.05 * YOUNG * (0.01 * SOUND * springs["time"][row]) ** 2)
         run.check(f"{name}: born loaded, made / held at birth",
                   -springs["energy"][-1] / springs["stored"][row], 1.0 - share)
-        run.true(f"{name}: born loaded, the log says made",
-                 [m[4] for m in told(result, FIRST)] == ["made"] and [m[2] for m in told(result, IN_ALL)] == ["made"])
+        run.true(f"{name}: born loaded, the log says created",
+                 [m[4] for m in told(result, FIRST)] == ["created"] and [m[2] for m in told(result, IN_ALL)] == ["created"])
         death = 0.99 / SOUND
         result = run.program(flights("dies loaded", kind, (0.0, 0.0, death)), name=f"dead_{kind}")
         energy, springs = result.table("glstat"), result.table("sleout")
