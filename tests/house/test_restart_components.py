@@ -14,7 +14,8 @@ EXEMPT = {
                 "outlines": "made of the deck and the status of elements"},
     "block_state_t": {"mass_shares": "made of the deck and the status of elements"},
     "contact_state_t": {"has": OF_THE_DECK, "scratch": "nothing in it lasts to the next step",
-                        "candidates": "no result depends on them", "reversed": "no result depends on them"},
+                        "candidates": "no result depends on them", "reversed": "no result depends on them",
+                        "arcs": "those of the initial mesh"},
     "contact_status_t": {"due": EACH_CYCLE, "faded": EACH_CYCLE, "pass": OF_THE_DECK, "reach": OF_THE_DECK},
     "segment_status_t": {"has_points": EACH_CYCLE},
     "schedule_t": {"end_time": "from the deck, which may change it", "curve": "kept as two arrays"},
@@ -36,7 +37,7 @@ EXEMPT = {
     "controls_t": {"implicit": "runs of several processes are explicit, its default"},
 }
 #: types of src/state that hold no memory
-WITHOUT_MEMORY = {"contact_scratch_t", "features_t", "candidates_t", "pass_t", "spring_t", "snapshot_t",
+WITHOUT_MEMORY = {"arcs_t", "contact_scratch_t", "features_t", "candidates_t", "pass_t", "spring_t", "snapshot_t",
                   "interface_result_t", "part_result_t", "slave_result_t",
                   "wall_result_t", "friction_result_t", "element_result_t", "body_result_t", "section_result_t",
                   "energies_t", "remote_t", "inside_tests_t"}

@@ -151,6 +151,10 @@ def ring(n, rows, inner, outer, start=0.0, centre=0.0):
                     for j in range(rows) for i in range(n)]
 
 
+#: Card 3 of contact with facets in place of arcs (SMOOTH -1).
+FLAT = (*[None] * 7, -1)
+
+
 def press_fit(kind, shaft=48, hub=60, static=False, fit=1.0e-3, form=13, turn=0.01):
     """A hollow shaft in a hub, radii 0.5, 1 and 2, too thick by `fit`."""
     deck = implicit(1.0, 1.0) if static else Deck("press fit").add("*CONTROL_TERMINATION", (0.2,))
@@ -162,7 +166,7 @@ def press_fit(kind, shaft=48, hub=60, static=False, fit=1.0e-3, form=13, turn=0.
         ids.append(deck.mesh(*body, part=part))
         if static:
             deck.fix(ids[-1][:1], x=1, y=1).fix(ids[-1][len(ids[-1]) // 10:len(ids[-1]) // 10 + 1], y=1)
-    deck.add("*CONTACT_2D_SLIDELINE", (1, 2, kind, 2, 16.0), (0.0, 1.0e20, 1))
+    deck.add("*CONTACT_2D_SLIDELINE", (1, 2, kind, 2, 16.0), (0.0, 1.0e20, 1), FLAT)
     return deck.output(plot=1.0, glstat=0.1)
 
 
@@ -224,7 +228,7 @@ def test_a_cylinder_on_a_plane_is_made_by_facets_where_few_of_them_touch(slideli
         roller = deck.mesh(*ring(n, n // 12, 0.5, 1.0), part=1)
         plane = deck.mesh(*grid(n // 2, n // 12, 2.0, 0.5, (-1.03, -1.501)), part=2)
         deck.node_set(1, roller).add("*INITIAL_VELOCITY", (1,), (0.0, -speed)).fix(plane[:n // 2 + 1], x=1, y=1)
-        deck.add("*CONTACT_2D_SLIDELINE", (1, 2, 7, 2, 2.0 * n), (0.0, 1.0e20, 1))
+        deck.add("*CONTACT_2D_SLIDELINE", (1, 2, 7, 2, 2.0 * n), (0.0, 1.0e20, 1), FLAT)
         done = slideline(deck=deck.output(plot=2.0, glstat=0.02))
         assert done.returncode == 0, done.stderr
         assert (tmp_path / "job.log").read_text().count("pressure is made by facets") == int(warns), (n, speed)

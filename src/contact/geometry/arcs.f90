@@ -16,9 +16,11 @@ module arcs_m
 
   !> Curvature at one end of a segment, as a part of that at the other, below which it is flat.
   real(wp), parameter :: flat = 0.1_wp
+  !> Sine of the turn up to which two segments are straight: inclined lines have some by round-off.
+  real(wp), parameter :: straight = 1.0e-6_wp
   !> The same below which the end is where a line meets the arc: the surface turns by half there.
   real(wp), parameter :: tangent = 0.75_wp
-  !> Largest sine of the angle between an arc and its secant, beyond which nothing is smoothed.
+  !> Largest sine of the angle between an arc and its secant.
   real(wp), parameter :: steepest = 0.9_wp
   !> Present over initial turn up to which arcs follow it, and from which on there are none: a
   !> plastic hinge is a corner.
@@ -153,7 +155,7 @@ contains
         end if
       end associate
       if (meets_corner(s) .or. product(sign([1.0_wp, 1.0_wp], ends)) < 0.0_wp) cycle
-      if (minval(abs(ends)) < flat*maxval(abs(ends))) cycle
+      if (minval(abs(ends)) < flat*maxval(abs(ends)) .or. .not. any(abs(ends) > 0.0_wp)) cycle
       curvature(s) = 0.5_wp*sum(ends)
       associate (k => minloc(abs(ends), 1))
         if (abs(ends(k)) < tangent*abs(ends(3 - k)) .and. abs(beyond(k)) < flat*abs(ends(k))) &
@@ -178,7 +180,9 @@ contains
       a = positions(1:2, one(2)) - positions(1:2, one(1))
       b = positions(1:2, two(2)) - positions(1:2, two(1))
     end associate
-    curvature = 2.0_wp*(a(1)*b(2) - a(2)*b(1))/max(tiny(1.0_wp), norm2(a)*norm2(b)*norm2(a + b))
+    curvature = 0.0_wp
+    if (abs(a(1)*b(2) - a(2)*b(1)) > straight*norm2(a)*norm2(b)) &
+      curvature = 2.0_wp*(a(1)*b(2) - a(2)*b(1))/(norm2(a)*norm2(b)*norm2(a + b))
     is_corner = dot_product(a, b) < cos(largest_turn)*norm2(a)*norm2(b)
   end subroutine curvature_at_end
 

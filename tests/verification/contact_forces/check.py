@@ -139,7 +139,7 @@ class Verdicts:
 
 def compare(run, name, scene, verdicts, key=lambda interface: label(interface.rule)):
     """Run a scene and compare the forces at time zero."""
-    found = run.program(scene.deck, name=name).points("contact_force")[0, :, :2]
+    found = run.program(scene.deck, "smooth=-1", name=name).points("contact_force")[0, :, :2]
     for interface in scene.interfaces:
         error, size, _ = interface.compare(scene.nodes, found)
         if error > TOLERANCE:
@@ -214,7 +214,7 @@ def shared_chains(run):
         made = None
         for rule in MAIN_RULES:
             made = scene.add(pair, rule, made)
-    found = run.program(scene.deck, name="shared_chains").points("contact_force")[0, :, :2]
+    found = run.program(scene.deck, "smooth=-1", name="shared_chains").points("contact_force")[0, :, :2]
     wanted = np.zeros_like(found)
     for interface in scene.interfaces:
         _, _, (slave, master) = interface.compare(scene.nodes, found)
@@ -226,7 +226,7 @@ def shared_chains(run):
 def sliding(run):
     """Force histories while the slave slides over many nodes, off both ends and back."""
     scene = sliding_scene(MAIN_RULES)
-    result = run.program(scene.deck, name="sliding")
+    result = run.program(scene.deck, "smooth=-1", name="sliding")
     found, moved = (result.points(name)[..., :2] for name in ("contact_force", "displacement"))
     verdicts = Verdicts()
     states = list(enumerate(result.times))[::1 if run.is_full else 3]

@@ -78,7 +78,7 @@ def check_wave(run):
               np.full(2, -RHO * wave * speed * 0.02))
     run.check("secforc, explicit: force before a wave, in tiles that rest",
               table.where(section=2)["fx"], np.zeros(3))
-    run.true("tiles rest in this run", "in the others all nodes moved as one" in (result.folder / "wave.log").read_text())
+    run.true("tiles rest in this run", "the others are quiescent or in rigid translation" in (result.folder / "wave.log").read_text())
 
 
 def check_balance(run, kind):

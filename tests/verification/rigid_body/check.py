@@ -208,7 +208,7 @@ def check_contact_mass(run):
     for factor in (0.99, 1.01):
         for turns in (True, False):
             result = run.program(springs(2, turns, factor * limit)[0])
-            said = "its penalty demands" in (result.folder / f"{result.job}.log").read_text()
+            said = "its penalty requires" in (result.folder / f"{result.job}.log").read_text()
             run.true(f"step of {factor} of the limit, turn {'held' if turns else 'free'}: warning",
                      said == (factor > 1.0 or not turns))
 
