@@ -8,7 +8,7 @@ module implicit_penalty_m
   use complementarity_m, only : problem_t, outcome_t, set_size, solve_complementarity, is_low, &
     is_between, is_high
   use contact_law_m, only : measure_springs, end_sampling
-  use contact_state_m, only : contact_state_t, touching_gap
+  use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, friction_rule_t
   use energy_limit_m, only : energy_factor, scale_forces, count_cycle, returned_t, slack, &
     store_previous_springs, form_springs
@@ -78,7 +78,7 @@ contains
     associate (nodal => memory%scratch%nodal)
       call average_values(memory%points, memory%points%gap, memory%n_slave, nodal)
       step%gap = nodal(1, :memory%n_slave)
-      call choose_rows(memory%n_slave, nodal, memory%node_pressure, touching_gap(memory), step%rows)
+      call choose_rows(memory%n_slave, nodal, memory%node_pressure, memory%closed_gap, step%rows)
       call form_shares(memory%points, step%rows)
     end associate
   end subroutine find_rows
@@ -142,7 +142,7 @@ contains
         left = step%gap
         if (memory%slave_penalty > 0.0_wp) left = left &
           + memory%node_pressure/(recovered*memory%slave_penalty)
-        overlaps = any(left < -overlap*touching_gap(memory))
+        overlaps = any(left < -overlap*memory%closed_gap)
         if (overlaps) limit%admissible = huge(1.0_wp)
         if (begins .or. overlaps) return
         limit%admissible = max(0.0_wp, -memory%energy)

@@ -132,7 +132,7 @@ contains
 
     memory%n_active = 0
     memory%force = 0.0_wp
-    memory%closed_gap = memory%arcs%allowance
+    memory%closed_gap = 0.0_wp
     if (memory%has%friction) then
       memory%scratch%dt = dt
       memory%friction%force = 0.0_wp
@@ -238,10 +238,9 @@ contains
       memory%segment_points, memory%travel)
     if (now%is_trial) then
       if (memory%has%friction) memory%scratch%increment = motion(3:4, memory%nodes)
-      if (now%closes) memory%closed_gap = memory%arcs%allowance + closed_gap_of(contact, memory)
+      if (now%closes) memory%closed_gap = closed_gap_of(contact, memory)
     else if (contact%penalty_unit == penalty_implicit) then
-      memory%closed_gap = memory%arcs%allowance + gap_ahead(contact, now%cycle == 0 &
-        .or. was_stale, memory)
+      memory%closed_gap = gap_ahead(contact, now%cycle == 0 .or. was_stale, memory)
     end if
     memory%slave_status%pass%is_trial = now%is_trial
     memory%master_status%pass%is_trial = now%is_trial

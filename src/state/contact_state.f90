@@ -22,7 +22,7 @@ module contact_state_m
   private
   public :: contact_state_t, contact_points_t, contact_scratch_t, arcs_t, features_t, &
     allocate_points, allocate_damping, allocate_tractions, make_room, move_point, &
-    allocate_scratch, exchange, n_side, n_sites, n_springs, site_at, touching_gap
+    allocate_scratch, exchange, n_side, n_sites, n_springs, site_at
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
@@ -88,8 +88,9 @@ module contact_state_m
     real(wp), allocatable :: turn(:)      !! (n_slave + n_master) tangent of half the turn at a node
                                           !! at time zero, above 0 where the body is convex
     integer, allocatable :: beside(:, :)  !! (2, n_slave + n_master) nodes before and behind, or 0
-    real(wp) :: allowance = 0.0_wp        !! how far arcs of both sides stand off their segments at
-                                          !! most, together, m
+    real(wp), allocatable :: height(:)    !! (n_slave + n_master) how far an arc may stand off its
+                                          !! segment, m: gaps below that make contact points
+    real(wp) :: highest = 0.0_wp          !! of both sides together, m
   end type arcs_t
 
   !> What an interface has beside springs along the normal at its points: by its formulation and by
@@ -135,9 +136,8 @@ module contact_state_m
     type(arcs_t) :: arcs                    !! of curved segments; only where these are smoothed
     type(contact_points_t), allocatable :: points !! of contact
     type(contact_points_t) :: tie_points    !! of ties: placed in the reference geometry, and frozen
-    real(wp) :: closed_gap = 0.0_wp         !! gaps of segments below it make contact points, m;
-                                            !! more than 0 only where a tangent of touching bodies
-                                            !! is wanted, or segments stand for arcs
+    real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where
+                                            !! a tangent of touching bodies is wanted
     real(wp), allocatable :: node_pressure(:) !! (n_slave) where pressure is formed at slave nodes,
                                             !! N/m
     real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last
@@ -300,15 +300,6 @@ contains
       site = points%master_nodes(1, p)
     end if
   end function site_at
-
-  !> Gap of contact points below which they count as closed, m; more than 0 only where a tangent of
-  !> touching bodies is wanted.
-  pure function touching_gap(memory) result(gap)
-    type(contact_state_t), intent(in) :: memory
-    real(wp) :: gap
-
-    gap = memory%closed_gap - memory%arcs%allowance
-  end function touching_gap
 
   !> Its components.
   subroutine visit_points(self, visitor)

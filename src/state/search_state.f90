@@ -37,6 +37,10 @@ module search_state_m
     logical :: is_trial = .false.      !! of an implicit step, which may lead to any depth
     real(wp) :: travel = 0.0_wp        !! accumulated relative displacement, m
     real(wp) :: closed_gap = 0.0_wp    !! gaps below it are contact, m
+    logical :: has_arcs = .false.      !! then gaps up to the heights of arcs make contact points
+    real(wp) :: highest = 0.0_wp       !! of these, of both segments together, m
+    real(wp), allocatable :: own_height(:)   !! (n_segment) of the points' surface, m
+    real(wp), allocatable :: other_height(:) !! (n_segment) of the other surface, m
   end type pass_t
 
   !> Status of the points of one surface over the segments of the other.

@@ -7,6 +7,7 @@ module arcs_m
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
+  use search_state_m, only : pass_t
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -56,13 +57,32 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     associate (arcs => memory%arcs)
-      allocate (arcs%share(2, size(memory%nodes)), arcs%turn(size(memory%nodes)), source=0.0_wp)
+      allocate (arcs%share(2, size(memory%nodes)), arcs%turn(size(memory%nodes)), &
+        arcs%height(size(memory%nodes)), source=0.0_wp)
       allocate (arcs%beside(2, size(memory%nodes)), source=0)
       call add_surface(contact%slave, contact%largest_turn, 0, memory%positions, arcs)
       call add_surface(contact%master, contact%largest_turn, memory%n_slave, memory%positions, arcs)
-      memory%has%arcs = arcs%allowance > 0.0_wp
-      memory%closed_gap = arcs%allowance
+      memory%has%arcs = any(arcs%height > 0.0_wp)
+      if (.not. memory%has%arcs) return
+      arcs%highest = maxval(arcs%height(:memory%n_slave)) + maxval(arcs%height(memory%n_slave + 1:))
+      call start_pass(contact%slave, contact%master, 0, memory%n_slave, memory%slave_status%pass)
+      call start_pass(contact%master, contact%slave, memory%n_slave, 0, memory%master_status%pass)
     end associate
+
+  contains
+
+    !> Heights where the points of a surface are looked for.
+    pure subroutine start_pass(own, other, before_own, before_other, pass)
+      type(surface_t), intent(in) :: own, other
+      integer, intent(in) :: before_own, before_other !! local numbers before their first nodes
+      type(pass_t), intent(inout) :: pass
+
+      pass%has_arcs = .true.
+      pass%highest = memory%arcs%highest
+      pass%own_height = memory%arcs%height(before_own + own%segments(1, :))
+      pass%other_height = memory%arcs%height(before_other + other%segments(1, :))
+    end subroutine start_pass
+
   end subroutine prepare_arcs
 
   !> Arcs of one surface. How far they stand off their secants has a margin for what they bend.
@@ -72,7 +92,7 @@ contains
     integer, intent(in) :: before           !! local number before its first node
     real(wp), intent(in) :: positions(:, :) !! (4, n_node) of the interface
     type(arcs_t), intent(inout) :: arcs
-    real(wp) :: curvature(surface%n_segment), highest
+    real(wp) :: curvature(surface%n_segment)
     logical :: meets_corner(surface%n_segment)
     integer :: s, k, neighbours(2)
 
@@ -88,13 +108,12 @@ contains
         positions(1:2, s) - positions(1:2, arcs%beside(1, s)), &
         positions(1:2, arcs%beside(2, s)) - positions(1:2, s))
     end do
-    highest = 0.0_wp
     do s = 1, surface%n_segment
       if (.not. abs(curvature(s)) > 0.0_wp) cycle
       neighbours = [surface%previous(s), surface%next(s)]
       associate (ends => before + surface%segments(:, s))
-        highest = max(highest, sagitta(curvature(s), norm2(positions(1:2, ends(2)) &
-          - positions(1:2, ends(1)))))
+        arcs%height(ends(1)) = followed*sagitta(curvature(s), norm2(positions(1:2, ends(2)) &
+          - positions(1:2, ends(1))))
         do k = 1, 2
           associate (share => arcs%share(k, ends(1)))
             share = half
@@ -108,7 +127,6 @@ contains
         end do
       end associate
     end do
-    arcs%allowance = arcs%allowance + followed*highest
   end subroutine add_surface
 
   !> Tangent of half the turn from one segment to the next.

@@ -43,7 +43,8 @@ contains
     logical :: none_due
 
     none_due = memory%slave_status%n_active == 0 &
-      .and. memory%travel + memory%closed_gap < memory%segments%earliest_search
+      .and. memory%travel + memory%closed_gap + memory%arcs%highest &
+      < memory%segments%earliest_search
   end function none_due
 
   !> Which of a range of slave segments may touch: an end is active, or the next search time has
@@ -56,14 +57,14 @@ contains
     real(wp) :: travel, distance
     integer :: s
 
-    travel = memory%travel + memory%closed_gap
+    travel = memory%travel + memory%closed_gap + memory%arcs%highest
     do s = first, last
       associate (state => memory%slave_status%state, ends => contact%slave%segments(:, s), &
         is_due => memory%segments%has_points(s))
         is_due = state(ends(1)) == active .or. state(ends(2)) == active
         if (is_due .or. travel < memory%segments%next_search(s)) cycle
         call search_row(contact, memory, s, distance, is_due)
-        is_due = is_due .or. distance < memory%closed_gap
+        is_due = is_due .or. distance < memory%closed_gap + memory%arcs%highest
         memory%segments%next_search(s) = memory%travel + distance
         if (is_due) cycle
         memory%segments%state(s) = separated
@@ -146,7 +147,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(contact_points_t), intent(inout) :: points
     integer, intent(inout) :: n_released !! first contacts deeper than the limit
-    real(wp) :: deepest, limit
+    real(wp) :: deepest, limit, gap
     integer :: first, last, s, p
     logical :: has_active_end
 
@@ -159,8 +160,13 @@ contains
         p = 0
         do last = first, points%n
           if (points%slave_nodes(1, last) /= ends(1)) exit
-          if (.not. points%area(last) > 0.0_wp .or. points%gap(last) >= deepest) cycle
-          deepest = points%gap(last)
+          if (.not. points%area(last) > 0.0_wp) cycle
+          gap = points%gap(last)
+          ! Contact of arcs begins above their segments.
+          if (memory%has%arcs) gap = gap - (memory%arcs%height(ends(1)) &
+            + memory%arcs%height(points%master_nodes(1, last)))
+          if (gap >= deepest) cycle
+          deepest = gap
           p = last
         end do
         last = last - 1

@@ -187,14 +187,16 @@ contains
     real(wp), intent(in) :: area       !! m
     type(contact_points_t), intent(inout) :: points
     type(projection_t) :: projection
-    real(wp) :: d(2), square
+    real(wp) :: d(2), square, closed_gap
 
     if (node == 0 .or. .not. area > 0.0_wp) return
     associate (positions => memory%positions, at => memory%n_slave + node)
       d = separation(positions(:, at), positions(:, ends(1)))
       square = max(t(1)**2 + t(2)**2, tiny(1.0_wp))
       projection%gap = (d(1)*t(2) - d(2)*t(1))/sqrt(square)
-      if (.not. projection%gap < memory%closed_gap) return
+      closed_gap = memory%closed_gap
+      if (memory%has%arcs) closed_gap = closed_gap + memory%arcs%height(ends(1))
+      if (.not. projection%gap < closed_gap) return
       projection%normal = [-t(2), t(1)]/sqrt(square)
       call add_point(points, ends, (d(1)*t(1) + d(2)*t(2))/square, [at, at], projection, area, &
         memory%slave_penalty)

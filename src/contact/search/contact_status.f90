@@ -4,7 +4,7 @@
 !> (doc/theory/contact.md, sections 3 and 4).
 module contact_status_m
   use search_state_m, only : contact_status_t, candidates_t, separated, active
-  use entry_m, only : found_contact_t, find_contact, is_pair, is_opposed
+  use entry_m, only : found_contact_t, find_contact, is_pair, is_opposed, contact_gap
   use projection_m, only : projection_t, follow_contact, gentle_turn
   use projection_block_m, only : projection_block_t, n_block, project_block, resolve_ambiguous
   use kinds_m, only : wp
@@ -32,7 +32,7 @@ contains
     if (status%n_active > 0) call follow_active(status, other, &
       positions(:, status%pass%other_at + 1:), points, n_due)
     ! Distances are to segments; contact begins at the closed gap.
-    travel = status%pass%travel + status%pass%closed_gap
+    travel = status%pass%travel + status%pass%closed_gap + status%pass%highest
     if (.not. travel < status%earliest_search) call list_due(status%n, status%next_search, travel, &
       status%earliest_search, status%due, n_due)
     has_changed = .false.
@@ -165,7 +165,7 @@ contains
 
     projection = follow_contact(other, positions(:, status%pass%other_at + 1:), point, &
       status%segment(i))
-    stays = projection%is_on .and. projection%gap < status%pass%closed_gap
+    stays = projection%is_on .and. projection%gap < contact_gap(status%pass, i, projection%segment)
     if (stays .and. dot_product(projection%normal, status%normal(:, i)) < gentle_turn) &
       stays = is_opposed(status%pass, own, positions, i, projection%normal)
     if (stays .and. status%pass%is_self) &

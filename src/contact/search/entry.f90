@@ -13,7 +13,7 @@ module entry_m
   use surfaces_m, only : surface_t, meets_axis
   implicit none
   private
-  public :: found_contact_t, find_contact, is_pair, segments_of, is_opposed
+  public :: found_contact_t, find_contact, contact_gap, is_pair, segments_of, is_opposed
 
   !> Relative motion that a point without candidates is away from contact, m: any.
   real(wp), parameter :: unpaired = 0.25_wp*huge(1.0_wp)
@@ -78,9 +78,10 @@ contains
             square = closest_distance(local)
             if (square < least) nearest = segment
             least = min(least, square)
-            if (local%across >= 0.0_wp .and. .not. pass%closed_gap > 0.0_wp) cycle
+            if (local%across >= 0.0_wp .and. .not. (pass%closed_gap > 0.0_wp .or. pass%has_arcs)) &
+              cycle
             gap = local_gap(local)
-            if (gap >= pass%closed_gap) cycle
+            if (gap >= contact_gap(pass, i, segment)) cycle
             found%lateral = min(found%lateral, way_in(local))
             if (.not. is_behind(status, own, other, positions, local, i, segment)) cycle
             if (has_entered(status, own, other, positions, increments, local, i, segment)) then
@@ -114,6 +115,19 @@ contains
     end if
     call search_closest(status, own, other, positions, increments, point, i, found)
   end function find_contact
+
+  !> Gap below which a point makes contact with a segment, m.
+  pure function contact_gap(pass, i, segment) result(gap)
+    type(pass_t), intent(in) :: pass
+    integer, intent(in) :: i       !! point
+    integer, intent(in) :: segment !! of the other surface
+    real(wp) :: gap
+
+    gap = pass%closed_gap
+    if (.not. pass%has_arcs) return
+    gap = gap + pass%other_height(segment)
+    if (pass%n_on_segment > 0) gap = gap + pass%own_height(1 + (i - 1)/pass%n_on_segment)
+  end function contact_gap
 
   !> Motion that brings a point on the inner side of a segment's line, beyond its ends, over the
   !> segment, m.
@@ -180,7 +194,7 @@ contains
             - end_tolerance*segment_length(positions(:, ends(1)), positions(:, ends(2))))
         end associate
       end if
-      if (projection%is_on .and. projection%gap < pass%closed_gap) then
+      if (projection%is_on .and. projection%gap < contact_gap(pass, i, projection%segment)) then
         found%distance = 0.0_wp
         if (.not. is_opposed(pass, own, positions, i, projection%normal)) then
           if (found%behind == 0) return

@@ -4,7 +4,7 @@
 !> 9.1, 9.5 and 9.8).
 module assembly_m
   use contact_law_m, only : linearise_pressure
-  use contact_state_m, only : contact_state_t, n_side, touching_gap
+  use contact_state_m, only : contact_state_t, n_side
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*)
   use spring_gaps_m, only : has_offsets, ramp_gaps
@@ -64,7 +64,7 @@ contains
     integer :: before
 
     gap = loaded_gap(memory, point)
-    acts = gap%value < touching_gap(memory)
+    acts = gap%value < memory%closed_gap
     if (acts .and. memory%has%breaks) acts = .not. is_tied_site(memory%ties%state(point%site))
     if (.not. acts) return
     pressure = linearise_pressure(memory%contact_law, point%stiffness, gap)
@@ -134,7 +134,7 @@ contains
       if (rule%most > 0.0_wp) most = rule%most*length
       traction = linearise_traction(rule, previous, slip, pressure, rule%stiffness*stiffness, &
         most, [memory%scratch%dt, memory%scratch%lag], &
-        merge(goes_on, before, touching_gap(memory) > 0.0_wp .and. before == slips))
+        merge(goes_on, before, memory%closed_gap > 0.0_wp .and. before == slips))
     end associate
   end function linearise_friction
 
@@ -212,7 +212,7 @@ contains
     pressures = constant(0.0_wp)
     tractions = constant(0.0_wp)
     do i = 1, memory%n_slave
-      if (.not. (gaps(i) < touching_gap(memory) .and. areas(i) > 0.0_wp)) cycle
+      if (.not. (gaps(i) < memory%closed_gap .and. areas(i) > 0.0_wp)) cycle
       if (memory%has%breaks) then
         if (is_tied_site(memory%ties%state(i))) cycle
       end if

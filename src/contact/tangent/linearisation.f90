@@ -5,7 +5,7 @@
 !> built from the same parts. All in dual numbers, so that each formula stands here once.
 module linearisation_m
   use arcs_m, only : arc_shape_t, present_shape, sine_at, is_flat, flat_arc, steepest, all_of_it
-  use contact_state_m, only : contact_state_t, touching_gap
+  use contact_state_m, only : contact_state_t
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
   use projection_m, only : side_on, face_on, gentle_vertex, sharp_vertex, round_off
@@ -149,7 +149,7 @@ contains
     if (memory%has%arcs) is_corner = is_corner &
       .and. is_flat(present_shape(memory, point%nodes(3)))
     if (is_corner) is_corner = abs(projection%xi%value - 0.5_wp) > 0.5_wp + round_off
-    if (is_corner .and. abs(gap) > max(touching_gap(memory), tiny(1.0_wp))) then
+    if (is_corner .and. abs(gap) > max(memory%closed_gap, tiny(1.0_wp))) then
       projection%xi = constant(xi)
       d = d - xi*t
       projection%gap = sign(1.0_wp, gap)*sqrt(d(1)*d(1) + d(2)*d(2))
