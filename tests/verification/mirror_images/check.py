@@ -86,7 +86,7 @@ def judge_images(run, deck):
     text = deck.read_text()
     moved = {}
     for name, marks in (("", {}), ("mirror image", {"is_mirrored": True}), ("FREQ 1", {"is_searched": True})):
-        result = run.program(images.image(text, **marks), name=f"{deck.stem}_{name.replace(' ', '_')}")
+        result = run.program(images.image(text, **marks), "smooth=-1", name=f"{deck.stem}_{name.replace(' ', '_')}")
         moved[name] = result.points("displacement")[..., :2] * ([-1.0, 1.0] if "is_mirrored" in marks else 1.0)
     largest = np.max(np.abs(moved[""]))
     for name in ("mirror image", "FREQ 1"):
