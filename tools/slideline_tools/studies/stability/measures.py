@@ -62,7 +62,7 @@ def judge(status, measures, side, approach, is_uniform):
 
 def cut_share(log):
     """Share of the cycles with force in which contact forces were limited, as the log tells."""
-    found = re.findall(r"no more energy than they took, in (\d+) of (\d+) cycles with force", log)
+    found = re.findall(r"limited to the admissible energy in (\d+) of (\d+) cycles with force", log)
     return int(found[-1][0]) / int(found[-1][1]) if found else 0.0
 
 
