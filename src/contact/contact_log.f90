@@ -80,6 +80,14 @@ contains
       //to_text(contact%damping)//' of critical')
     if (memory%has%friction) call write_log(log, '  friction: ' &
       //friction_text(contact%friction, model%controls%units))
+    if (memory%has%arcs) then
+      associate (is_curved => abs(memory%arcs%share(1, :)) > 0.0_wp, n => memory%n_slave)
+        call write_log(log, '  arcs: '//to_text(count(is_curved(:n)))//' of ' &
+          //to_text(contact%slave%n_segment)//' slave segments, ' &
+          //to_text(count(is_curved(n + 1:)))//' of '//to_text(contact%master%n_segment) &
+          //' master segments stand for arcs (SMOOTH)')
+      end associate
+    end if
     if (memory%has%ties) call log_ties(contact, model, memory, log)
     if (memory%has%contact) then
       call write_log(log, '  deepest first contact: '//to_text(minval( &

@@ -91,6 +91,8 @@ def check_fits(run):
                 fit.deck.fix([int(fit.shaft[counts[0] // 4, 0])], x=1)
             fit.contact(kind, ramp=[(0.0, 0.0), (1.0, 1.0)])
             result = run.program(fit.deck.output(plot=1.0))
+            run.true(f"{TYPES[kind]}, {label}: all segments stand for arcs", "arcs: {0} of {0} slave segments, {1} of {1} master"
+                     .format(*counts) in (result.folder / f"{result.job}.log").read_text())
             mean, spread = fit.found(result)
             size = 0.02 if label == "24/30" else 0.003 if counts[0] == 24 else 0.01
             run.check(f"{TYPES[kind]}, {label}: mean pressure over that of Lame", mean / fit.pressure(kind, interference), 1.0,
