@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> What the log says about an interface.
 module contact_log_m
+  use arcs_m, only : coarse_turn
   use contact_dispatch_m, only : formulation_t, formulation_of, is_strict
   use contact_penalty_m, only : rigid_factor, mean_length, built_in_penalty, side_stiffness
   use contact_state_m, only : contact_state_t
@@ -80,6 +81,11 @@ contains
       //to_text(contact%damping)//' of critical')
     if (memory%has%friction) call write_log(log, '  friction: ' &
       //friction_text(contact%friction, model%controls%units))
+    if (memory%has%contact .and. contact%largest_turn > 0.0_wp) then
+      call warn_of_coarse_circle(contact, contact%slave, 'slave', memory%positions, log)
+      if (.not. contact%is_self) call warn_of_coarse_circle(contact, contact%master, 'master', &
+        memory%positions(:, memory%n_slave + 1:), log)
+    end if
     if (memory%has%arcs) then
       associate (is_curved => abs(memory%arcs%share(1, :)) > 0.0_wp, n => memory%n_slave)
         call write_log(log, '  arcs: '//to_text(count(is_curved(:n)))//' of ' &
@@ -94,6 +100,22 @@ contains
         memory%slave_status%point_depth))//in_units(model%controls%units, 'L')//' or less')
     end if
   end subroutine log_contact
+
+  !> A warning where a circle is too coarse for arcs.
+  subroutine warn_of_coarse_circle(contact, surface, side, positions, log)
+    type(contact_t), intent(in) :: contact
+    type(surface_t), intent(in) :: surface
+    character(*), intent(in) :: side
+    real(wp), intent(in) :: positions(:, :) !! (4, at least n_node) of the surface
+    type(log_t), intent(inout) :: log
+    real(wp) :: turn
+
+    turn = coarse_turn(surface, positions, contact%largest_turn)*180.0_wp/acos(-1.0_wp)
+    if (turn > 0.0_wp) call warn(log, 'interface '//to_text(contact%id)//': its '//side &
+      //' surface turns by '//to_text(turn)//' degrees from segment to segment, more than ' &
+      //'SMOOTH ('//to_text(nint(contact%largest_turn*180.0_wp/acos(-1.0_wp)))//'): flat facets ' &
+      //'there, no arcs; SMOOTH '//to_text(ceiling(turn))//' makes them arcs')
+  end subroutine warn_of_coarse_circle
 
   !> Implicit springs, and a warning where the slave is both finer and stiffer: its nodes take turns
   !> then.
