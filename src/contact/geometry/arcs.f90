@@ -12,10 +12,10 @@ module arcs_m
   implicit none
   private
   public :: prepare_arcs, coarse_turn, find_curvatures, sagitta, curve_points, arc_shape_t, &
-    arc_projection_t, project_on_arcs, project_virtual_node, present_shape, sine_at, is_flat, &
-    flat_arc, steepest, all_of_it
+    arc_projection_t, project_on_arcs, project_virtual_node, present_shape, sine_at, sine_terms, &
+    is_flat, flat_arc, steepest
 
-  !> Curvature at one end of a segment, as a part of that at the other, below which it is flat.
+  !> Turn at one end of a segment, as a part of that at the other, below which it is flat.
   real(wp), parameter :: flat = 0.1_wp
   !> Sine of the turn up to which two segments are straight: inclined lines have some by round-off.
   real(wp), parameter :: straight = 1.0e-6_wp
@@ -31,8 +31,9 @@ module arcs_m
   real(wp), parameter :: coarsest = 31.0_wp/180.0_wp*acos(-1.0_wp)
   integer, parameter :: in_a_row = 3
   !> Parts of the turn at a node that the arc of a segment has there: all where a line meets the
-  !> arc, else half. At the end of an open surface it is the mirror image of the other end.
-  real(wp), parameter :: all_of_it = 1.0_wp, half = 0.5_wp, mirrored = -1.0_wp
+  !> arc, else as its length in that of both. At the end of an open surface it is the mirror image
+  !> of the other end.
+  real(wp), parameter :: all_of_it = 1.0_wp, mirrored = -1.0_wp
 
   !> Shape of an arc over its secant: the sine of its angle to the secant is
   !> bend (1/2 - xi) + skew (1 - 6 xi (1 - xi)): normals of neighbours meet at their node.
@@ -98,6 +99,7 @@ contains
     type(arcs_t), intent(inout) :: arcs
     real(wp) :: curvature(surface%n_segment)
     logical :: meets_corner(surface%n_segment)
+    real(wp) :: length(surface%n_segment), part(2)
     integer :: s, k, neighbours(2)
 
     call find_curvatures(surface, positions(:, before + 1:), largest_turn, curvature, meets_corner)
@@ -105,6 +107,7 @@ contains
       associate (ends => before + surface%segments(:, s))
         arcs%beside(2, ends(1)) = ends(2)
         arcs%beside(1, ends(2)) = ends(1)
+        length(s) = norm2(positions(1:2, ends(2)) - positions(1:2, ends(1)))
       end associate
     end do
     do s = before + 1, before + surface%n_node
@@ -116,18 +119,17 @@ contains
       if (.not. abs(curvature(s)) > 0.0_wp) cycle
       neighbours = [surface%previous(s), surface%next(s)]
       associate (ends => before + surface%segments(:, s))
-        arcs%height(ends(1)) = followed*sagitta(curvature(s), norm2(positions(1:2, ends(2)) &
-          - positions(1:2, ends(1))))
+        arcs%height(ends(1)) = followed*sagitta(curvature(s), length(s))
+        part = mirrored
         do k = 1, 2
-          associate (share => arcs%share(k, ends(1)))
-            share = half
-            if (neighbours(k) == 0) then
-              share = mirrored
-            else if (.not. abs(curvature(neighbours(k))) > 0.0_wp .and. &
-              abs(arcs%turn(ends(k))) < tangent*abs(arcs%turn(ends(3 - k)))) then
-              share = all_of_it
-            end if
-          end associate
+          if (neighbours(k) > 0) part(k) = length(s)/(length(s) + length(neighbours(k)))
+        end do
+        arcs%share(:, ends(1)) = part
+        do k = 1, 2
+          if (neighbours(k) == 0) cycle
+          if (.not. abs(curvature(neighbours(k))) > 0.0_wp .and. abs(arcs%turn(ends(k))) &
+            < tangent*2.0_wp*part(3 - k)*abs(arcs%turn(ends(3 - k)))) &
+            arcs%share(k, ends(1)) = all_of_it
         end do
       end associate
     end do
@@ -177,40 +179,46 @@ contains
 
   !> Curvature of the arc that each segment of a surface stands for: the mean of those at its ends,
   !> kappa_i = 2 (a x b)/(|a| |b| |a + b|) of the circle through three nodes; 0 where one end is a
-  !> corner, flat, or bent the other way; at an end of an open surface, and where a line meets the
-  !> arc, that of the other end.
+  !> corner, straight, or bent the other way, and on a line between arcs (bent less at its ends than
+  !> beyond); at an end of an open surface, and where a line meets the arc, that of the other end.
   pure subroutine find_curvatures(surface, positions, largest_turn, curvature, meets_corner)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :)   !! (at least 2, n_node) X, Y at time zero, m
     real(wp), intent(in) :: largest_turn      !! between two segments, rad; more is a corner
     real(wp), intent(out) :: curvature(:)     !! (n_segment) 1/m, above 0 where the body is convex
     logical, intent(out) :: meets_corner(:)   !! (n_segment) at either end
-    real(wp) :: at_end(surface%n_segment), ends(2), beyond(2)
-    logical :: is_corner(surface%n_segment)
+    real(wp) :: at_end(surface%n_segment), turn(surface%n_segment), ends(2), beyond(2), turns(2)
+    logical :: is_corner(surface%n_segment), is_line
     integer :: s
 
     at_end = 0.0_wp
+    turn = 0.0_wp
     is_corner = .false.
     do s = 1, surface%n_segment
       if (surface%next(s) > 0) call curvature_at_end(surface, positions, s, largest_turn, &
-        at_end(s), is_corner(s))
+        at_end(s), turn(s), is_corner(s))
     end do
     curvature = 0.0_wp
     meets_corner = is_corner
     do s = 1, surface%n_segment
       associate (before => surface%previous(s), after => surface%next(s))
         ends = at_end(s)
+        turns = turn(s)
         beyond = 0.0_wp
         if (after > 0) beyond(2) = at_end(after)
         if (before > 0) then
           meets_corner(s) = meets_corner(s) .or. is_corner(before)
           ends(1) = at_end(before)
+          turns(1) = turn(before)
           if (surface%previous(before) > 0) beyond(1) = at_end(surface%previous(before))
           if (after == 0) ends(2) = ends(1)
+          if (after == 0) turns(2) = turns(1)
         end if
+        is_line = all(abs(ends) < tangent*abs(beyond) .or. [before, after] == 0)
       end associate
+      if (is_line) cycle
       if (meets_corner(s) .or. product(sign([1.0_wp, 1.0_wp], ends)) < 0.0_wp) cycle
-      if (minval(abs(ends)) < flat*maxval(abs(ends)) .or. .not. any(abs(ends) > 0.0_wp)) cycle
+      if (minval(abs(turns)) < flat*maxval(abs(turns)) .or. .not. any(abs(turns) > 0.0_wp)) cycle
       curvature(s) = 0.5_wp*sum(ends)
       associate (k => minloc(abs(ends), 1))
         if (abs(ends(k)) < tangent*abs(ends(3 - k)) .and. abs(beyond(k)) < flat*abs(ends(k))) &
@@ -221,12 +229,14 @@ contains
 
   !> Curvature of the circle through the nodes of a segment and the next one, and whether the turn
   !> between them is a corner.
-  pure subroutine curvature_at_end(surface, positions, segment, largest_turn, curvature, is_corner)
+  pure subroutine curvature_at_end(surface, positions, segment, largest_turn, curvature, turn, &
+    is_corner)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :)
     integer, intent(in) :: segment
     real(wp), intent(in) :: largest_turn !! rad
     real(wp), intent(out) :: curvature !! 1/m
+    real(wp), intent(out) :: turn      !! tangent of half of it
     logical, intent(out) :: is_corner
     real(wp) :: a(2), b(2)
 
@@ -236,8 +246,11 @@ contains
       b = positions(1:2, two(2)) - positions(1:2, two(1))
     end associate
     curvature = 0.0_wp
-    if (abs(a(1)*b(2) - a(2)*b(1)) > straight*norm2(a)*norm2(b)) &
+    turn = 0.0_wp
+    if (abs(a(1)*b(2) - a(2)*b(1)) > straight*norm2(a)*norm2(b)) then
       curvature = 2.0_wp*(a(1)*b(2) - a(2)*b(1))/(norm2(a)*norm2(b)*norm2(a + b))
+      turn = half_turn(a, b)
+    end if
     is_corner = dot_product(a, b) < cos(largest_turn)*norm2(a)*norm2(b)
   end subroutine curvature_at_end
 
@@ -283,12 +296,19 @@ contains
     ratio = turn/memory%arcs%turn(node)
     if (ratio <= 0.0_wp .or. ratio >= hinge) turn = 0.0_wp
     if (ratio > followed) turn = turn*(hinge - ratio)/(hinge - followed)
-    if (share < all_of_it) then
-      sine = turn/sqrt(1.0_wp + turn**2)
-    else
-      sine = 2.0_wp*turn/(1.0_wp + turn**2)
-    end if
+    associate (terms => sine_terms(share))
+      sine = 2.0_wp*share*turn/sqrt(1.0_wp + turn**2*(terms(1) + turn**2*terms(2)))
+    end associate
   end function sine_at
+
+  !> Factors of the powers 2 and 4 of the tangent x of half a turn in the square of 2 p x over the
+  !> sine of the part p of the turn: exact for half and all of it, else to the order 6.
+  pure function sine_terms(share) result(terms)
+    real(wp), intent(in) :: share
+    real(wp) :: terms(2)
+
+    terms = [(2.0_wp + 4.0_wp*share**2)/3.0_wp, (16.0_wp*share**4 - 1.0_wp)/15.0_wp]
+  end function sine_terms
 
   !> Whether a segment is flat.
   pure function is_flat(shape)
@@ -316,29 +336,45 @@ contains
   end subroutine find_height
 
   !> Projection on the arc over a secant t of length L, from that of the point on the secant, at the
-  !> distance d and xi: with the height s of the arc there and its angle beta, g = (d - s) cos(beta)
-  !> and n turned by -beta; the force acts along n, for the point on its own secant at
-  !> xi + d tan(beta)/L, so that it has no moment. A circle has sin(beta) = kappa L (1/2 - xi).
+  !> distance d and xi: by one Newton step to where the normal n of the arc, at the angle beta to
+  !> that of the secant, goes through the point; the force acts along n, for the point on its own
+  !> secant at xi + d tan(beta)/L, so that it has no moment. Both arcs of a node so have the same
+  !> normal there. A circle has sin(beta) = kappa L (1/2 - xi).
   pure function project_on_arc(t, d, off, shape) result(projection)
     real(wp), intent(in) :: t(2)   !! secant, m
     real(wp), intent(in) :: d(2)   !! from its first node to the point on its own secant, m
     real(wp), intent(in) :: off(2) !! from there to the point on its own arc, m
     type(arc_shape_t), intent(in) :: shape
     type(arc_projection_t) :: projection
-    real(wp) :: length, unit(2), normal(2), xi, sine, cosine, across, height
+    real(wp) :: length, unit(2), normal(2), xi, way, sine, cosine, across, above, height
 
     length = sqrt(t(1)**2 + t(2)**2)
     unit = t/length
     normal = [unit(2), -unit(1)]
     across = d(1)*normal(1) + d(2)*normal(2)
+    above = across + (off(1)*normal(1) + off(2)*normal(2))
     xi = ((d(1) + off(1))*unit(1) + (d(2) + off(2))*unit(2))/length
     call find_height(shape, xi, height, sine)
+    way = way_to_foot(shape, xi, (above/length - height)*sqrt(1.0_wp - sine**2), sine)
+    call find_height(shape, xi + way, height, sine)
     cosine = sqrt(1.0_wp - sine**2)
-    projection%gap = (across + (off(1)*normal(1) + off(2)*normal(2)) - height*length)*cosine
+    projection%gap = (above - height*length)*cosine + way*length*sine
     projection%offset = projection%gap - across
     projection%normal = normal*cosine - unit*sine
     projection%xi = (d(1)*unit(1) + d(2)*unit(2) + across*sine/cosine)/length
   end function project_on_arc
+
+  !> Newton step from above a place on an arc to the place whose normal goes through the point, as a
+  !> part of the secant; no longer than for a point at half the radius of curvature.
+  pure function way_to_foot(shape, xi, gap, sine) result(way)
+    type(arc_shape_t), intent(in) :: shape
+    real(wp), intent(in) :: xi, gap, sine !! gap as a part of the secant
+    real(wp) :: way, fall
+
+    fall = shape%bend + 6.0_wp*shape%skew*(1.0_wp - 2.0_wp*xi)
+    if (abs(xi - 0.5_wp) > 0.5_wp) fall = 0.0_wp
+    way = gap*sine/max(0.5_wp, 1.0_wp + gap*fall)
+  end function way_to_foot
 
   !> Let all points of an interface stand between arcs: gaps, normals and where forces act on the
   !> segments that have the normals. Points between flat segments keep their bits.

@@ -4,7 +4,7 @@
 !> doc/theory/contact.md, section 9). What the formulations make of these, areas above all, is
 !> built from the same parts. All in dual numbers, so that each formula stands here once.
 module linearisation_m
-  use arcs_m, only : arc_shape_t, present_shape, sine_at, is_flat, flat_arc, steepest, all_of_it
+  use arcs_m, only : arc_shape_t, present_shape, sine_at, sine_terms, is_flat, flat_arc, steepest
   use contact_state_m, only : contact_state_t
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
@@ -174,8 +174,8 @@ contains
     type(dual_t), intent(in) :: d(2)    !! from its first node to the point, m
     type(dual_t), intent(in) :: t(2)    !! the segment, m
     type(linearised_projection_t), intent(inout) :: projection
-    type(dual_t) :: own(2), off(2), length, unit(2), normal(2), across, sine, cosine, height
-    type(dual_t) :: bend, skew
+    type(dual_t) :: own(2), off(2), length, unit(2), normal(2), across, above, xi, way, sine, cosine
+    type(dual_t) :: bend, skew, height
     type(arc_shape_t) :: own_shape
 
     own_shape = flat_arc
@@ -196,10 +196,13 @@ contains
     unit = [t(1)/length, t(2)/length]
     normal = [unit(2), -unit(1)]
     across = d(1)*normal(1) + d(2)*normal(2)
-    call find_height(bend, skew, ((d(1) + off(1))*unit(1) + (d(2) + off(2))*unit(2))/length, &
-      height, sine)
+    above = across + off(1)*normal(1) + off(2)*normal(2)
+    xi = ((d(1) + off(1))*unit(1) + (d(2) + off(2))*unit(2))/length
+    call find_height(bend, skew, xi, height, sine)
+    way = way_to_foot(bend, skew, xi, (above/length - height)*sqrt(1.0_wp - sine*sine), sine)
+    call find_height(bend, skew, xi + way, height, sine)
     cosine = sqrt(1.0_wp - sine*sine)
-    projection%gap = (across + off(1)*normal(1) + off(2)*normal(2) - height*length)*cosine
+    projection%gap = (above - height*length)*cosine + way*length*sine
     projection%normal = [normal(1)*cosine - unit(1)*sine, normal(2)*cosine - unit(2)*sine]
     point%shift = across*sine/cosine
     projection%xi = (d(1)*unit(1) + d(2)*unit(2) + point%shift)/length
@@ -229,8 +232,9 @@ contains
         else
           turn = half_turn(t, beside)
         end if
-        sines(k) = turn/sqrt(turn*turn + 1.0_wp)
-        if (share(k) >= all_of_it) sines(k) = 2.0_wp*(turn/(turn*turn + 1.0_wp))
+        associate (terms => sine_terms(share(k)))
+          sines(k) = (2.0_wp*share(k))*turn/sqrt(turn*turn*(terms(2)*turn*turn + terms(1)) + 1.0_wp)
+        end associate
         associate (value => sine_at(memory, ends(k), share(k)))
           if (abs(sines(k)%value) > 0.0_wp) sines(k) = (value/sines(k)%value)*sines(k)
         end associate
@@ -271,6 +275,19 @@ contains
     height = x*(1.0_wp - x)*(bend/(sqrt(1.0_wp - circle*circle) + sqrt(1.0_wp &
       - end_sine*end_sine)) + skew*(1.0_wp - 2.0_wp*x)) + (xi - x)*sine/sqrt(1.0_wp - sine*sine)
   end subroutine find_height
+
+  !> Newton step from above a place on an arc to the place whose normal goes through the point
+  !> (`arcs_m`).
+  pure function way_to_foot(bend, skew, xi, gap, sine) result(way)
+    type(dual_t), intent(in) :: bend, skew, xi, gap, sine !! gap as a part of the secant
+    type(dual_t) :: way, fall
+
+    fall = bend + 6.0_wp*skew*(1.0_wp - 2.0_wp*xi)
+    if (abs(xi%value - 0.5_wp) > 0.5_wp) fall = constant(0.0_wp)
+    fall = gap*fall + 1.0_wp
+    if (fall%value < 0.5_wp) fall = constant(0.5_wp)
+    way = gap*sine/fall
+  end function way_to_foot
 
   !> Slip of a point in the step over the segment in slots 3, 4, m: L d(xi). Where slot 4 is not
   !> used the segment that has the normal is the slave's.
