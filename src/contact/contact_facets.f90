@@ -2,7 +2,7 @@
 !> Segments that stand for arcs: by how much these facets put gaps off beside the penetration. Where
 !> that is much, they make the pressure (doc/theory/contact.md, section 8.2).
 module contact_facets_m
-  use arcs_m, only : find_curvatures, sagitta
+  use arcs_m, only : find_curvatures, half_turn, sagitta
   use law_state_m, only : contact_estimate_t
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use contacts_m, only : contact_t
@@ -11,7 +11,7 @@ module contact_facets_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: follow_arcs, report_facets
+  public :: follow_arcs, report_facets, coarse_turn
 
   !> Part of the largest penetration above which the error of gaps by facets is reported.
   real(wp), parameter :: noticed_part = 0.1_wp
@@ -20,6 +20,13 @@ module contact_facets_m
 
   !> Turns of more than 16 degrees are corners (24 segments on a circle turn by 15).
   real(wp), parameter :: largest_turn = 16.0_wp/180.0_wp*acos(-1.0_wp)
+
+  !> Largest turn of a coarse circle (12 segments, with a margin), and how many like turns in a row
+  !> make one: a bolt head has 6 corners of 60 degrees, an octagon 8 of 45.
+  real(wp), parameter :: coarsest = 31.0_wp/180.0_wp*acos(-1.0_wp)
+  integer, parameter :: in_a_row = 3
+  !> Part by which such turns are alike.
+  real(wp), parameter :: alike = 0.1_wp
 
   !> Arcs that the segments of both surfaces stand for, those of the slave first.
   type :: arcs_t
@@ -209,5 +216,38 @@ contains
 
     segments_of = 2.0_wp*acos(-1.0_wp)/sqrt(8.0_wp*curvature*height)
   end function segments_of
+
+  !> Largest turn of a surface that looks like a coarse circle and has no arcs there, since it turns
+  !> by more than SMOOTH from segment to segment, rad; 0: none.
+  pure function coarse_turn(surface, positions, largest_turn) result(turn)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: positions(:, :) !! (at least 2, n_node) X, Y at time zero, m
+    real(wp), intent(in) :: largest_turn    !! rad
+    real(wp) :: turn
+    real(wp) :: turns(surface%n_segment)
+    integer :: s, k, n_like
+
+    turns = 0.0_wp
+    do s = 1, surface%n_segment
+      if (surface%next(s) == 0) cycle
+      associate (a => surface%segments(:, s), b => surface%segments(:, surface%next(s)))
+        turns(s) = 2.0_wp*atan(half_turn(positions(1:2, a(2)) - positions(1:2, a(1)), &
+          positions(1:2, b(2)) - positions(1:2, b(1))))
+      end associate
+    end do
+    turn = 0.0_wp
+    do s = 1, surface%n_segment
+      if (abs(turns(s)) <= largest_turn .or. abs(turns(s)) > coarsest) cycle
+      n_like = 1
+      k = s
+      do while (n_like < in_a_row)
+        k = surface%next(k)
+        if (k == 0) exit
+        if (abs(turns(k) - turns(s)) > alike*abs(turns(s))) exit
+        n_like = n_like + 1
+      end do
+      if (n_like == in_a_row) turn = max(turn, abs(turns(s)))
+    end do
+  end function coarse_turn
 
 end module contact_facets_m

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> What the log says about an interface.
 module contact_log_m
-  use arcs_m, only : coarse_turn
+  use contact_facets_m, only : coarse_turn
   use contact_dispatch_m, only : formulation_t, formulation_of, is_strict
   use contact_penalty_m, only : rigid_factor, mean_length, built_in_penalty, side_stiffness
   use contact_state_m, only : contact_state_t

@@ -11,7 +11,7 @@ module arcs_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: prepare_arcs, coarse_turn, find_curvatures, sagitta, curve_points, arc_shape_t, &
+  public :: prepare_arcs, half_turn, find_curvatures, sagitta, curve_points, arc_shape_t, &
     arc_projection_t, project_on_arcs, project_virtual_node, present_shape, sine_at, sine_terms, &
     is_flat, flat_arc, steepest
 
@@ -26,10 +26,6 @@ module arcs_m
   !> Present over initial turn up to which arcs follow it, and from which on there are none: a
   !> plastic hinge is a corner.
   real(wp), parameter :: followed = 1.5_wp, hinge = 3.0_wp
-  !> Largest turn of a coarse circle (12 segments, with a margin), and how many like turns in a row
-  !> make one: a bolt head has 6 corners of 60 degrees, an octagon 8 of 45.
-  real(wp), parameter :: coarsest = 31.0_wp/180.0_wp*acos(-1.0_wp)
-  integer, parameter :: in_a_row = 3
   !> Parts of the turn at a node that the arc of a segment has there: all where a line meets the
   !> arc, else as its length in that of both. At the end of an open surface it is the mirror image
   !> of the other end.
@@ -134,39 +130,6 @@ contains
       end associate
     end do
   end subroutine add_surface
-
-  !> Largest turn of a surface that looks like a coarse circle and has no arcs there, since it turns
-  !> by more than SMOOTH from segment to segment, rad; 0: none.
-  pure function coarse_turn(surface, positions, largest_turn) result(turn)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: positions(:, :) !! (at least 2, n_node) X, Y at time zero, m
-    real(wp), intent(in) :: largest_turn    !! rad
-    real(wp) :: turn
-    real(wp) :: turns(surface%n_segment)
-    integer :: s, k, n_like
-
-    turns = 0.0_wp
-    do s = 1, surface%n_segment
-      if (surface%next(s) == 0) cycle
-      associate (a => surface%segments(:, s), b => surface%segments(:, surface%next(s)))
-        turns(s) = 2.0_wp*atan(half_turn(positions(1:2, a(2)) - positions(1:2, a(1)), &
-          positions(1:2, b(2)) - positions(1:2, b(1))))
-      end associate
-    end do
-    turn = 0.0_wp
-    do s = 1, surface%n_segment
-      if (abs(turns(s)) <= largest_turn .or. abs(turns(s)) > coarsest) cycle
-      n_like = 1
-      k = s
-      do while (n_like < in_a_row)
-        k = surface%next(k)
-        if (k == 0) exit
-        if (abs(turns(k) - turns(s)) > flat*abs(turns(s))) exit
-        n_like = n_like + 1
-      end do
-      if (n_like == in_a_row) turn = max(turn, abs(turns(s)))
-    end do
-  end function coarse_turn
 
   !> Tangent of half the turn from one segment to the next.
   pure function half_turn(a, b) result(turn)
