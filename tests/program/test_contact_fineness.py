@@ -232,3 +232,12 @@ def test_a_cylinder_on_a_plane_is_made_by_facets_where_few_of_them_touch(slideli
         done = slideline(deck=deck.output(plot=2.0, glstat=0.02))
         assert done.returncode == 0, done.stderr
         assert (tmp_path / "job.log").read_text().count("pressure is made by facets") == int(warns), (n, speed)
+
+
+@pytest.mark.parametrize("hub, words, warns", [(16, (), True), (16, ("smooth=23",), False), (60, (), False), (16, ("smooth=-1",), False)])
+def test_a_circle_too_coarse_for_arcs_is_named(slideline, tmp_path, hub, words, warns):
+    """16 segments turn by 22.5 degrees: facets, beside the arcs of the shaft, unless SMOOTH allows that."""
+    done = slideline(*(words or ("smooth=0",)), "endtim=1e-3", deck=press_fit(5, hub=hub))
+    assert done.returncode == 0, done.stderr
+    assert ("its master surface turns by 2.250000E+01 degrees from segment to segment, more than SMOOTH (16)"
+            in (tmp_path / "job.log").read_text()) == warns

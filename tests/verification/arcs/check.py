@@ -12,11 +12,12 @@ BORE, OUTER, HOLE = 1.0, 2.0, 0.5
 COMPLIANCE = 1.0e-3 / 3.296703e-4
 
 
-def ring(inner, outer, rows, facets, first=0.0, angle=2.0 * np.pi):
-    """Nodes and quads of a ring, or a part of one, ray by ray; rays of a whole ring close."""
+def ring(inner, outer, rows, facets, first=0.0, angle=2.0 * np.pi, uneven=0.0):
+    """Nodes and quads of a ring, or a part of one, ray by ray; rays of a whole ring close. Every second ray may be turned by a
+    part of a facet."""
     whole = angle >= 2.0 * np.pi
     rays = facets if whole else facets + 1
-    turns = first + angle * np.arange(rays) / facets
+    turns = first + angle * (np.arange(rays) + uneven * (np.arange(rays) % 2)) / facets
     radii = np.linspace(inner, outer, rows + 1)
     nodes = np.array([(r * np.cos(t), r * np.sin(t)) for t in turns for r in radii])
     quads = [[k * (rows + 1) + i, k * (rows + 1) + i + 1, (k + 1) % rays * (rows + 1) + i + 1, (k + 1) % rays * (rows + 1) + i]
@@ -27,11 +28,12 @@ def ring(inner, outer, rows, facets, first=0.0, angle=2.0 * np.pi):
 class Fit:
     """A hollow shaft in a hub; the springs have the stiffness of one facet of the hub."""
 
-    def __init__(self, facets, interference, rows, first=0.0, angle=2.0 * np.pi):
+    def __init__(self, facets, interference, rows, first=0.0, angle=2.0 * np.pi, uneven=0.0):
         self.deck = Deck("shaft in a hub")
         for part in (1, 2):
             self.deck.part(part, points=4).elastic(1.0, 1.0, 0.3, part)
-        meshes = [ring(HOLE, BORE + interference, rows, facets[0], first, angle), ring(BORE, OUTER, 2 * rows, facets[1], 0.0, angle)]
+        meshes = [ring(HOLE, BORE + interference, rows, facets[0], first, angle, uneven),
+                  ring(BORE, OUTER, 2 * rows, facets[1], 0.0, angle)]
         self.shaft = self.deck.mesh(*meshes[0], part=1).reshape(-1, rows + 1)
         self.hub = self.deck.mesh(*meshes[1], part=2).reshape(-1, 2 * rows + 1)
         self.start = np.vstack([mesh[0] for mesh in meshes])
@@ -73,12 +75,13 @@ class Fit:
 def check_fits(run):
     """A quarter with symmetry, static; 24 against 30 facets as whole rings."""
     interference = 1.0e-3
-    for facets in ((12, 15), (15, 12), (24, 30), "24/30", "60/60, half a pitch"):
+    for facets in ((12, 15), (15, 12), (24, 30), "24/30", "60/60, half a pitch", "48/60, long facets twice the short ones"):
         whole = isinstance(facets, str)
         counts = tuple(map(int, re.findall(r"\d+", facets))) if whole else facets
         label = facets if whole else f"{4 * counts[0]}/{4 * counts[1]}"
         for kind in TYPES:
-            fit = Fit(counts, interference, 6, np.pi / 60.0 if "pitch" in label else 0.0, 2.0 * np.pi if whole else 0.5 * np.pi)
+            fit = Fit(counts, interference, 6, np.pi / 60.0 if "pitch" in label else 0.0, 2.0 * np.pi if whole else 0.5 * np.pi,
+                      1.0 / 3.0 if "long" in label else 0.0)
             fit.deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 0.25))
             fit.deck.add("*CONTROL_IMPLICIT_DYNAMICS", (0,))
             for body, column in ((fit.shaft, 0), (fit.hub, -1)):
@@ -97,7 +100,7 @@ def check_fits(run):
             size = 0.02 if label == "24/30" else 0.003 if counts[0] == 24 else 0.01
             run.check(f"{TYPES[kind]}, {label}: mean pressure over that of Lame", mean / fit.pressure(kind, interference), 1.0,
                       tol=size)
-            if kind in (4, 5, 7):
+            if kind in (4, 5, 7) and "long" not in label:
                 run.check(f"{TYPES[kind]}, {label}: nodal pressures over their mean, root mean square", spread, 0.0,
                           tol=3.0 * size if label == "24/30" else 2.0 * size)
 
