@@ -38,7 +38,7 @@ class Fit:
         self.hub = self.deck.mesh(*meshes[1], part=2).reshape(-1, 2 * rows + 1)
         self.start = np.vstack([mesh[0] for mesh in meshes])
         self.quads = np.vstack([meshes[0][1], meshes[1][1] + self.shaft.size])
-        self.facets, self.angle = facets, angle
+        self.facets, self.angle, self.interference = facets, angle, interference
         self.springs = facets[1] / angle
 
     def contact(self, kind, friction=0.0, damping=0.0, ramp=None, extra=None):
@@ -51,6 +51,11 @@ class Fit:
             self.deck.curve(1, ramp)
         self.deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 2, penalty, friction, friction), (None, None, unit, None, damping),
                       (None, None, None, None, None, 1 if ramp else None, None, extra))
+
+    def hold_rays(self):
+        """Symmetry of a quarter."""
+        for body in (self.shaft, self.hub):
+            self.deck.fix(body[0], y=1).fix(body[-1], x=1)
 
     def pressure(self, kind, interference):
         """Lame in series with the springs; two passes are two layers."""
@@ -72,37 +77,72 @@ class Fit:
         return np.array(means), np.array(spread)
 
 
+def static_fit(run, name, kind, fit):
+    """The fit at rest, by four static steps; the rings stand on single nodes, a quarter on its rays."""
+    fit.deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 0.25))
+    fit.deck.add("*CONTROL_IMPLICIT_DYNAMICS", (0,))
+    if fit.angle < 6.0:
+        fit.hold_rays()
+    else:
+        for body, column in ((fit.shaft, 0), (fit.hub, -1)):
+            fit.deck.fix([int(body[0, column]), int(body[len(body) // 2, column])], y=1)
+        fit.deck.fix([int(fit.shaft[fit.facets[0] // 4, 0])], x=1)
+    fit.contact(kind, ramp=[(0.0, 0.0), (1.0, 1.0)])
+    result = run.program(fit.deck.output(plot=1.0))
+    run.true(f"{name}: all segments stand for arcs",
+             told("{0} of {0}".format(fit.facets[0]), "{0} of {0}".format(fit.facets[1])) in log_of(result))
+    return fit.found(result)
+
+
+def told(slave, master):
+    """What the log says of arcs."""
+    return f"arcs: {slave} slave segments, {master} master"
+
+
+def log_of(result):
+    """Text of the log."""
+    return (result.folder / f"{result.job}.log").read_text()
+
+
+def judge_fit(run, name, kind, fit, found, size, spread=None):
+    """Mean pressure of both sides within `size`, nodal ones of types 4, 5, 7 within `spread`, where there is one."""
+    run.check(f"{name}: mean pressure over that of Lame", found[0] / fit.pressure(kind, fit.interference), 1.0, tol=size)
+    if kind in (4, 5, 7) and spread:
+        run.check(f"{name}: nodal pressures over their mean, root mean square", found[1], 0.0, tol=spread)
+
+
 def check_fits(run):
     """A quarter with symmetry, static; 24 against 30 facets as whole rings."""
-    interference = 1.0e-3
     for facets in ((12, 15), (15, 12), (24, 30), "24/30", "60/60, half a pitch", "48/60, long facets twice the short ones"):
         whole = isinstance(facets, str)
         counts = tuple(map(int, re.findall(r"\d+", facets))) if whole else facets
         label = facets if whole else f"{4 * counts[0]}/{4 * counts[1]}"
+        size = 0.02 if label == "24/30" else 0.003 if counts[0] == 24 else 0.01
         for kind in TYPES:
-            fit = Fit(counts, interference, 6, np.pi / 60.0 if "pitch" in label else 0.0, 2.0 * np.pi if whole else 0.5 * np.pi,
+            fit = Fit(counts, 1.0e-3, 6, np.pi / 60.0 if "pitch" in label else 0.0, 2.0 * np.pi if whole else 0.5 * np.pi,
                       1.0 / 3.0 if "long" in label else 0.0)
-            fit.deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 0.25))
-            fit.deck.add("*CONTROL_IMPLICIT_DYNAMICS", (0,))
-            for body, column in ((fit.shaft, 0), (fit.hub, -1)):
-                if whole:
-                    half = len(body) // 2
-                    fit.deck.fix([int(body[0, column]), int(body[half, column])], y=1)
-                else:
-                    fit.deck.fix(body[0], y=1).fix(body[-1], x=1)
-            if whole:
-                fit.deck.fix([int(fit.shaft[counts[0] // 4, 0])], x=1)
-            fit.contact(kind, ramp=[(0.0, 0.0), (1.0, 1.0)])
-            result = run.program(fit.deck.output(plot=1.0))
-            run.true(f"{TYPES[kind]}, {label}: all segments stand for arcs", "arcs: {0} of {0} slave segments, {1} of {1} master"
-                     .format(*counts) in (result.folder / f"{result.job}.log").read_text())
-            mean, spread = fit.found(result)
-            size = 0.02 if label == "24/30" else 0.003 if counts[0] == 24 else 0.01
-            run.check(f"{TYPES[kind]}, {label}: mean pressure over that of Lame", mean / fit.pressure(kind, interference), 1.0,
-                      tol=size)
-            if kind in (4, 5, 7) and "long" not in label:
-                run.check(f"{TYPES[kind]}, {label}: nodal pressures over their mean, root mean square", spread, 0.0,
-                          tol=3.0 * size if label == "24/30" else 2.0 * size)
+            name = f"{TYPES[kind]}, {label}"
+            judge_fit(run, name, kind, fit, static_fit(run, name, kind, fit), size,
+                      0.0 if "long" in label else 3.0 * size if label == "24/30" else 2.0 * size)
+    for angle, kind in run.cover(range(12), TYPES, strength=1):
+        fit = Fit((60, 60), 1.0e-3, 4, angle * np.pi / 1440.0)
+        name = f"{TYPES[kind]}, 60/60, {angle}/48 of a pitch"
+        judge_fit(run, name, kind, fit, static_fit(run, name, kind, fit), 0.01, 0.02)
+
+
+def check_explicit(run):
+    """The quarter of 48 against 60 facets, explicit: interference and damping bring it to rest."""
+    end = 60.0
+    for kind in TYPES:
+        fit = Fit((12, 15), 1.0e-3, 6, angle=0.5 * np.pi)
+        fit.hold_rays()
+        fit.deck.control(end, scale=0.8).add("*DAMPING_GLOBAL", (0, 1.0))
+        fit.contact(kind, ramp=[(0.0, 0.0), (end / 3.0, 1.0), (2.0 * end, 1.0)])
+        result = run.program(fit.deck.output(plot=end, glstat=end))
+        energies = result.table("glstat")
+        name = f"{TYPES[kind]}, 48/60, explicit"
+        run.check(f"{name}: kinetic / internal energy at the end", energies["kinetic"][-1] / energies["internal"][-1], 0.0)
+        judge_fit(run, name, kind, fit, fit.found(result), 0.01, 0.02)
 
 
 def momentum(fit, result, nodes):
@@ -142,4 +182,5 @@ def check_spin(run):
 
 def check(run):
     check_fits(run)
+    check_explicit(run)
     check_spin(run)
