@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from contact_types import TYPES
-from meshes import Deck, angular_momentum, lumped_mass
+from meshes import Deck, angular_momentum, grid, lumped_mass
 
 BORE, OUTER, HOLE = 1.0, 2.0, 0.5
 #: Radial displacement per pressure of both rings together, E 1, nu 0.3, plane strain (Lame): interference / pressure.
@@ -145,7 +145,7 @@ def check_explicit(run):
         judge_fit(run, name, kind, fit, fit.found(result), 0.01, 0.02)
 
 
-def momentum(fit, result, nodes):
+def momentum(fit, nodes, result):
     """Angular momentum of some nodes about the origin at all states, over the first."""
     mass = lumped_mass(fit.start, fit.quads, 1.0)
     values = np.array([angular_momentum(mass[nodes], x[nodes], v[nodes])
@@ -153,8 +153,9 @@ def momentum(fit, result, nodes):
     return values / values[0]
 
 
-def spin(run, kind, facets, interference, both, turns, *, friction=0.0, damping=0.0, extra=None):
-    """A shaft that spins, or shaft and hub as one, explicit."""
+def spin(run, kind, facets, interference, both, turns, *, friction=0.0, damping=0.0, rise=0.05, extra=None):
+    """A shaft that spins, or shaft and hub as one, explicit: the fit, nodes that move (from 0), what came
+    out; the interference rises during a share of the time."""
     speed = 0.02
     end = 2.0 * np.pi * turns / speed
     fit = Fit(facets, interference, 3)
@@ -163,24 +164,101 @@ def spin(run, kind, facets, interference, both, turns, *, friction=0.0, damping=
     if not both:
         fit.deck.fix(fit.hub[:, -1], x=1, y=1)
     fit.deck.add("*INITIAL_VELOCITY_NODE", *[(int(k + 1), -speed * fit.start[k, 1], speed * fit.start[k, 0]) for k in moves])
-    fit.contact(kind, friction, damping, [(0.0, 0.0), (end / 20.0, 1.0), (2.0 * end, 1.0)], extra)
-    result = run.program(fit.deck.output(plot=end / 10.0))
-    return momentum(fit, result, moves)
+    fit.contact(kind, friction, damping, [(0.0, 0.0), (rise * end, 1.0), (2.0 * end, 1.0)], extra)
+    return fit, moves, run.program(fit.deck.output(plot=end / 10.0))
 
 
 def check_spin(run):
     """Without friction the bore takes nothing from the shaft; what spins as one keeps its spin, damped or held by friction."""
     for kind in TYPES:
         name = TYPES[kind]
-        run.check(f"{name}: spin of a shaft in a bore after three turns", spin(run, kind, (26, 30), 2.0e-3, False, 3.0)[-1], 1.0,
-                  tol=3.0e-4 if kind in (4, 6) else 1.0e-4)
-        run.check(f"{name}: spin of a damped fit after a turn", spin(run, kind, (26, 30), 1.0e-3, True, 1.0, damping=20.0)[-1], 1.0,
-                  tol=1.0e-4)
-        run.check(f"{name}: spin of a fit held by friction after a turn and a half",
-                  spin(run, kind, (13, 15), 1.0e-3, True, 1.5, friction=0.3, extra=29)[-1], 1.0, tol=1.5e-4)
+        left = momentum(*spin(run, kind, (26, 30), 2.0e-3, False, 3.0))[-1]
+        run.check(f"{name}: spin of a shaft in a bore after three turns", left, 1.0, tol=3.0e-4 if kind in (4, 6) else 1.0e-4)
+        left = momentum(*spin(run, kind, (26, 30), 1.0e-3, True, 1.0, damping=20.0))[-1]
+        run.check(f"{name}: spin of a damped fit after a turn", left, 1.0, tol=1.0e-4)
+        left = momentum(*spin(run, kind, (13, 15), 1.0e-3, True, 1.5, friction=0.3, extra=29))[-1]
+        run.check(f"{name}: spin of a fit held by friction after a turn and a half", left, 1.0, tol=1.5e-4)
+
+
+def check_torque(run, mu=0.1):
+    """A shaft that turns in the bore, explicit: the moment of its contact forces over mu times radius times normal forces."""
+    for kind in TYPES:
+        fit, _, result = spin(run, kind, (26, 30), 2.0e-3, False, 0.1, friction=mu, rise=0.5)
+        nodes = fit.shaft[:, -1] - 1
+        place, force = (result.points(name)[-1, nodes, :2] for name in ("Points", "contact_force"))
+        moment = np.sum(place[:, 0] * force[:, 1] - place[:, 1] * force[:, 0])
+        normal = np.sum(np.abs(np.einsum("ij,ij->i", force, place)))
+        run.check(f"{TYPES[kind]}: moment of friction over mu times normal forces times radius", -moment / (mu * normal), 1.0)
+
+
+def rolling_height(run, kind):
+    """Heights of the axis of a rigid disc of 48 facets, radius 1, that rolls by three of them on a rigid floor, the slave, over
+    the sagitta. It sinks in by 1e-3 under its weight: three nodes of the floor touch at a time, of one facet."""
+    facets, sink, end, mass, spacing = 48, 1.0e-3, 150.0, 0.03, 0.008
+    way = 6.0 * np.pi / facets
+    deck = Deck("rolling disc").control(end, dt=0.04)
+    for part, held in ((1, 0), (2, 7)):
+        deck.part(part).add("*MAT_RIGID", (part, mass / (0.75 * np.pi), 1.0e-3, 0.3), (1, held, held), (0.0,))
+    nodes, quads = ring(0.5, 1.0, 1, facets, -0.5 * np.pi)
+    disc = deck.mesh(nodes + [0.0, 1.0 - sink], quads, part=1).reshape(-1, 2)
+    columns = round((way + 0.3) / spacing)
+    floor = deck.mesh(*grid(columns, 1, way + 0.3, 0.1, (-0.15, -0.1)), part=2)[-columns - 1:]
+    deck.node_set(1, floor[::-1]).node_set(2, [*disc[:, 1], disc[0, 1]])
+    deck.add("*LOAD_BODY_Y", (1, 4.0 / 3.0 * sink * np.sqrt(2.0 * sink) / mass)).curve(1, [(0.0, 1.0), (1.0e6, 1.0)])
+    deck.add("*INITIAL_VELOCITY_GENERATION", (1, 2, -way / end, way / end, 0.0), (0.0, 1.0 - sink))
+    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 4, 0.5 if kind == 3 else 1.0), (None, None, 1, None, 20.0))
+    pair = [int(disc[0, 0]), int(disc[facets // 2, 0])]
+    result = run.program(deck.output(nodout=end / 300.0, nodes=pair))
+    height = sum(result.node(node)["y"] for node in pair) / 2.0
+    return height[len(height) // 3:] / (0.5 * (np.pi / facets) ** 2)
+
+
+def check_rolling(run):
+    """The height stays; with two passes nodes of the disc, which are further apart than contact is wide, act besides."""
+    for kind in TYPES:
+        height = rolling_height(run, kind)
+        text = f"{TYPES[kind]}: height of a rolling disc over the sagitta, less its mean"
+        if kind == 3:
+            run.report(text, np.max(np.abs(height - height.mean())))
+        else:
+            run.check(text, height - height.mean(), 0.0)
+
+
+def polygon(sides, radius=0.0, facets=1, parts=4):
+    """Outline of a regular polygon about the origin, inner radius 1, counter-clockwise: `parts` segments a side, corners with
+    fillets of `facets` segments each where there is a radius."""
+    turn = 2.0 * np.pi / sides
+    half = (1.0 - radius) * np.tan(0.5 * turn)
+    share = np.linspace(0.0, 1.0, facets + 1)[:-1] if radius else np.zeros(0)
+    points = []
+    for k in range(sides):
+        outward, along = (np.array([np.cos(k * turn + shift), np.sin(k * turn + shift)]) for shift in (0.0, 0.5 * np.pi))
+        side = np.linspace(-half, half, parts + 1)
+        points += [outward + along * way for way in side[:-1]]
+        centre = (1.0 - radius) * outward + half * along
+        points += [centre + radius * np.array([np.cos((k + part) * turn), np.sin((k + part) * turn)]) for part in share]
+    return np.array(points)
+
+
+def check_outlines(run):
+    """Neither a line nor a corner has an arc; fillets have."""
+    for name, outline, arcs in (("square", polygon(4), 0), ("hexagon", polygon(6), 0),
+                                ("square with fillets", polygon(4, 0.3, 6), 24)):
+        deck = Deck(name).control(1.0e-3)
+        deck.part(1).elastic(1.0, 1.0, 0.3)
+        rays = np.arange(len(outline))
+        quads = [[2 * k, 2 * k + 1, 2 * after + 1, 2 * after] for k, after in zip(rays, np.roll(rays, -1))]
+        body = deck.mesh(np.column_stack([0.5 * outline, outline]).reshape(-1, 2), quads).reshape(-1, 2)
+        nodes, quads = ring(2.0, 3.0, 1, 24)
+        bore = deck.mesh(nodes, quads).reshape(-1, 2)
+        deck.node_set(1, [*body[:, 1], body[0, 1]]).node_set(2, [*bore[::-1, 0], bore[-1, 0]]).contact(1, 2, 5, 1.0, unit=1)
+        run.true(f"{name}: arcs on fillets alone", told(f"{arcs} of {len(outline)}", "24 of 24") in log_of(run.program(deck)))
 
 
 def check(run):
     check_fits(run)
     check_explicit(run)
     check_spin(run)
+    check_torque(run)
+    check_rolling(run)
+    check_outlines(run)
