@@ -11,6 +11,7 @@ module deck_m
   use model_m, only : model_t
   use eos_m, only : eos_t
   use parts_m, only : hourglass_t
+  use deck_boxes_m, only : read_boxes
   use deck_contact_sides_m, only : mesh_boundary_t
   use deck_contacts_m, only : read_contacts
   use deck_control_m, only : read_controls, read_outputs, read_relaxation, read_ends
@@ -29,7 +30,7 @@ module deck_m
   use deck_wall_m, only : read_walls
   use deck_report_m, only : emit_warnings, emit_errors, list_findings
   use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, a_curve, &
-    a_system, a_node_set, a_part_set, a_segment_set, a_shell_set
+    a_system, a_box, a_node_set, a_part_set, a_segment_set, a_shell_set
   use deck_lines_m, only : deck_t, location_t, line_error, line_warning, file_paths, flag_blank
   use deck_reader_m, only : read_file, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
@@ -150,6 +151,7 @@ contains
     call read_controls(deck, model, hourglass, erodes, step_line)
     call read_outputs(deck, model)
     call read_systems(deck)
+    call read_boxes(deck)
     call read_materials(deck, tables, model)
     call read_equations(deck, equations)
     call read_sections(deck, model)
@@ -294,7 +296,7 @@ contains
       if (index(name, 'SECTION') == 1) call note_refused(deck, [a_section])
       if (index(name, 'MAT') == 1) call note_refused(deck, [a_material])
       if (index(name, 'EOS') == 1) call note_refused(deck, [an_eos])
-      if (index(name, 'DEFINE') == 1) call note_refused(deck, [a_curve, a_system])
+      if (index(name, 'DEFINE') == 1) call note_refused(deck, [a_curve, a_system, a_box])
       if (index(name, 'SET') == 1) call note_refused(deck, [a_node_set, a_part_set, a_segment_set, &
         a_shell_set])
       is_ended = is_ended .or. name == 'CONTROL_TERMINATION'

@@ -320,7 +320,7 @@ def unsupported():
         "heading": ["with an equation of state"], "pid": [12], "secid": [12], "mid": [12], "eosid": [3],
         "hgid": [0], "grav": [0], "adpopt": [0], "tmid": [0]})))
     deck.append(kwd.SectionShell(secid=12, elform=2))
-    deck.append(kwd.InitialVelocity(nsid=1, boxid=9, vx=1.0))
+    deck.append(kwd.InitialVelocity(nsid=1, icid=9, vx=1.0))
     deck.append(kwd.Contact2DAutomaticSurfaceToSurface(surfa=2, surfb=1, fs=0.2, fd=0.1, sldsoa=1.0e-4))
     return {"": deck}
 

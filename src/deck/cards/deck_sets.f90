@@ -9,12 +9,13 @@ module deck_sets_m
   use sorting_m, only : sorted_order
   use boundary_m, only : boundary_t, find_boundary
   use model_m, only : model_t
+  use deck_boxes_m, only : mark_box
   use deck_lines_m, only : deck_t, blocks_of, count_rows, line_error, line_warning
   use deck_fields_m, only : card_t, field_text
   use deck_cards_m, only : cursor_t, open_cursor, next_text, next_card, next_row, next_of, &
     report_field
   use deck_ids_m, only : ids_between, kind_names, a_node, an_element, a_part, a_node_set, &
-    a_part_set, a_segment_set, a_shell_set
+    a_part_set, a_segment_set, a_shell_set, a_box
   use deck_values_m, only : integer_of, is_bad, map_defined, note_refused, find_id
   implicit none
   private
@@ -250,26 +251,31 @@ contains
     type(model_t), intent(in) :: model
     type(set_t), intent(inout) :: set
     character(:), allocatable :: action
-    integer :: i, k, found
+    integer :: i, k, kind, found
 
     action = upper_case(field_text(deck, card, 1))
     if (.not. allocated(set%position)) allocate (set%position(model%mesh%n_node), source=0)
-    if (all(action /= ['ALL  ', 'NODE ', 'DNODE', 'PART ', 'DPART'])) then
-      call report_field(deck, card, 'OPTION', 'is not ALL, NODE, DNODE, PART or DPART (boxes are ' &
-        //'not available in slideline)')
+    if (all(action /= ['ALL  ', 'NODE ', 'DNODE', 'PART ', 'DPART', 'BOX  ', 'DBOX '])) then
+      call report_field(deck, card, 'OPTION', &
+        'is not ALL, NODE, DNODE, PART, DPART, BOX or DBOX')
       return
     else if (action == 'ALL') then
       call change_members([(i, i=1, model%mesh%n_node)])
       return
     end if
     if (all(card%i(2:) == 0)) call report_field(deck, card, 'E1', 'is not a number of 1 or more')
+    kind = a_node
+    if (index(action, 'PART') > 0) kind = a_part
+    if (index(action, 'BOX') > 0) kind = a_box
     do k = 2, 1 + count(card%kinds == 'i')
       if (card%i(k) < 0) call report_field(deck, card, k, 'is not a number of 1 or more')
       if (card%i(k) < 1) cycle
-      call find_id(deck, merge(a_part, a_node, index(action, 'PART') > 0), card, k, found)
-      if (found > 0 .and. index(action, 'PART') == 0) call change_members([found])
-      if (found == 0 .or. index(action, 'PART') == 0) cycle
-      do i = 1, model%mesh%n_element
+      call find_id(deck, kind, card, k, found)
+      if (found == 0) cycle
+      if (kind == a_node) call change_members([found])
+      if (kind == a_box) call change_members(pack([(i, i=1, model%mesh%n_node)], &
+        mark_box(deck, found, model)))
+      do i = 1, merge(model%mesh%n_element, 0, kind == a_part)
         if (model%mesh%element_part(i) == found) call change_members(model%mesh%element_nodes(:, i))
       end do
     end do

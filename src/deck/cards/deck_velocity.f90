@@ -5,12 +5,14 @@ module deck_velocity_m
   use kinds_m, only : wp
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, check_rest, report_field
+  use deck_boxes_m, only : mark_box
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, check_rest, report_field, &
+    warn_of_field
   use deck_fields_m, only : card_t
-  use deck_ids_m, only : a_node, a_part, a_node_set, a_part_set
+  use deck_ids_m, only : a_node, a_part, a_node_set, a_part_set, a_box
   use deck_lines_m, only : deck_t, blocks_of, line_warning
   use deck_supports_m, only : find_body, mark_axis, warn_of_nodes, across_axis
-  use deck_values_m, only : integer_of, real_of, reals_of, find_id
+  use deck_values_m, only : integer_of, real_of, reals_of, location_of, find_id
   implicit none
   private
   public :: read_velocities
@@ -67,8 +69,8 @@ contains
     call move_alloc(velocity, model%conditions%initial_velocity)
   end subroutine read_velocities
 
-  !> *INITIAL_VELOCITY: a node set or all nodes, without those of a second set, which have another
-  !> velocity.
+  !> *INITIAL_VELOCITY: a node set or all nodes, with BOXID those in the box, without the nodes of a
+  !> second set, which have another velocity.
   subroutine read_velocity(deck, cursor, model, first_line, velocity)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -77,7 +79,7 @@ contains
     real(wp), intent(inout) :: velocity(:, :)
     type(card_t) :: cards(3)
     logical :: is_chosen(model%mesh%n_node)
-    integer :: set, others, i
+    integer :: set, box, others, i
 
     call next_card(deck, cursor, 1, cards(1))
     call next_card(deck, cursor, 2, cards(2))
@@ -89,6 +91,14 @@ contains
     if (.not. integer_of(cards(1), 'NSID') == 0) then
       call find_id(deck, a_node_set, cards(1), 'NSID', set)
       if (set > 0) is_chosen(model%node_sets(set)%nodes) = .true.
+    end if
+    if (integer_of(cards(1), 'BOXID') > 0) then
+      call find_id(deck, a_box, cards(1), 'BOXID', box)
+      if (box > 0) then
+        is_chosen = is_chosen .and. mark_box(deck, box, model)
+        if (.not. any(is_chosen)) call warn_of_field(deck, location_of(cards(1), 'BOXID'), &
+          'has none of the nodes that it is to give a velocity')
+      end if
     end if
     if (integer_of(cards(1), 'NSIDEX') > 0) then
       call find_id(deck, a_node_set, cards(1), 'NSIDEX', others)

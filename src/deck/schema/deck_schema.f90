@@ -166,7 +166,7 @@ module deck_schema_m
     //'slideline; 0 is the mechanical one', &
     'MODEL asks for another law of foams', &
     'N5,N6,N7,N8 is a mid-side node; elements and edges have corner nodes only here', &
-    'BOXID is a box', &
+    'BOXID is a box of nodes', &
     'PHASE is a velocity of dynamic relaxation', &
     'IRELAL asks for automatic control of the relaxation, which this version does not have; ' &
     //'leave it 0 and give DRFCTR', &

@@ -161,6 +161,8 @@ module deck_schema_tables_m
     'DEFINE_COORDINATE_SYSTEM t', &
     ' CID:i>=1 XO:f YO:f ZO:f XL:f YL:f ZL:f CIDL:ir', &
     ' XP:f YP:f ZP:f', &
+    'DEFINE_BOX t', &
+    ' BOXID:i>=1 XMN:f XMX:f YMN:f YMX:f ZMN:fs ZMX:fs', &
     'DEFINE_TABLE t', &
     ' TBID:i>=1 SFA:f=1>=0 OFFA:f', &
     ' VALUE:f20', &
@@ -208,7 +210,7 @@ module deck_schema_tables_m
     'BOUNDARY_PRESCRIBED_MOTION_RIGID tr', &
     ' PID:i>=1 DOF:i|1|2|7 VAD:i|0|1|2 LCID:i>=1 SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
     'INITIAL_VELOCITY o', &
-    ' NSID:i>=0 NSIDEX:i>=0 BOXID:ir IRIGID:is ICID:ir', &
+    ' NSID:i>=0 NSIDEX:i>=0 BOXID:i>=0 IRIGID:is ICID:ir', &
     ' VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw', &
     ' VXE:f VYE:f VZE:fw VXRE:fw VYRE:fw VZRE:fw', &
     'INITIAL_VELOCITY_NODE r', &

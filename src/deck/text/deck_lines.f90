@@ -97,6 +97,7 @@ module deck_lines_m
     type(parameters_t) :: parameters
     type(id_map_t) :: maps(n_kind)            !! from user ids to indices, by kind
     real(wp), allocatable :: axes(:, :, :)    !! (2, 2, n) x and y axis of each coordinate system
+    real(wp), allocatable :: boxes(:, :, :)   !! (2, 2, n) least and largest x and y of each box
     type(report_t) :: report
   end type deck_t
 
