@@ -48,11 +48,28 @@ def segments(deck, face, seat, *_):
         deck.add("*SET_SEGMENT", (number,), *pairs[::-1])
 
 
+def general_segments(deck, face, seat, upper, lower):
+    """What is left of outlines, with one edge twice and one that goes out and comes back."""
+    deck.add("*DEFINE_BOX", (1, -1.0, 2.0, -1.0, -0.05)).add("*DEFINE_BOX", (2, -1.0, 2.0, -0.05, 0.05))
+    first, second = face[:2].tolist()
+    deck.add("*SET_SEGMENT_GENERAL", (1,), ("PART", 1), ("DSEG", second, first), ("SEG", first, second), ("SEG", second, first),
+             *[("DSEG", int(a), int(b)) for a, b in outline(upper, 5) if {a, b} - set(face.tolist())])
+    deck.add("*SET_SEGMENT_GENERAL", (2,), ("BOX", 2), ("DPART", 1), ("PART", 2), ("DBOX", 1),
+             *[("DSEG", int(a), int(b)) for a, b in outline(lower, 7) if {a, b} - set(seat.tolist())])
+
+
+def outline(ids, n):
+    """Edges around a mesh with n elements in a row."""
+    rows = ids.reshape(-1, n + 1)
+    ring = [*rows[0], *rows[1:, -1], *rows[-1, -2::-1], *rows[-2::-1, 0]]
+    return list(zip(ring[:-1], ring[1:]))
+
+
 @pytest.mark.parametrize("keyword", KEYWORDS)
 def test_a_chain_is_the_same_by_any_set(slideline, tmp_path, keyword):
     sign = 1 if keyword in WITH_POSITIVE_NODE_SETS else -1
     for folder, sets, sides in (("lists", lists, (sign, 2 * sign)), ("general", general, (sign, 2 * sign)),
-                                ("segments", segments, (1, 2))):
+                                ("segments", segments, (1, 2)), ("general_segments", general_segments, (1, 2))):
         done = slideline(f"d={folder}", deck=deck_of(keyword, sets, sides))
         assert done.returncode == 0, done.stderr
         assert histories(tmp_path / folder) == histories(tmp_path / "lists")
@@ -69,11 +86,14 @@ def test_boundaries_of_parts_are_those_of_part_sets(slideline, tmp_path, keyword
 
     def edges(deck, face, seat, upper, lower):
         for number, ids, n in ((11, upper, 5), (12, lower, 7)):
-            rows = ids.reshape(-1, n + 1)
-            ring = [*rows[0], *rows[1:, -1], *rows[-1, -2::-1], *rows[-2::-1, 0]]
-            deck.add("*SET_SEGMENT", (number,), *[(int(a), int(b)) for a, b in zip(ring[:-1], ring[1:])])
+            deck.add("*SET_SEGMENT", (number,), *[(int(a), int(b)) for a, b in outline(ids, n)])
 
-    for folder, sets, sides in (("parts", parts, (1, 2)), ("boundaries", boundaries, (11, 12)), ("edges", edges, (11, 12))):
+    def added(deck, *_):
+        deck.add("*SET_PART_LIST", (5,), (1,)).add("*SET_PART_LIST", (6,), (2,))
+        deck.add("*SET_PART_ADD", (1,), (5, 5)).add("*SET_PART_ADD", (2,), (6,))
+
+    for folder, sets, sides in (("parts", parts, (1, 2)), ("boundaries", boundaries, (11, 12)), ("edges", edges, (11, 12)),
+                                ("added", added, (1, 2))):
         done = slideline(f"d={folder}", deck=deck_of(keyword, sets, sides))
         assert done.returncode == 0, done.stderr
         assert histories(tmp_path / folder) == histories(tmp_path / "parts")

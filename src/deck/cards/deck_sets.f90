@@ -12,10 +12,11 @@ module deck_sets_m
   use deck_boxes_m, only : mark_box
   use deck_lines_m, only : deck_t, blocks_of, count_rows, line_error, line_warning
   use deck_fields_m, only : card_t, field_text
-  use deck_cards_m, only : cursor_t, open_cursor, next_text, next_card, next_row, next_of, &
-    report_field
+  use deck_cards_m, only : cursor_t, first_card, open_cursor, next_text, next_card, next_row, &
+    next_of, report_field
   use deck_ids_m, only : ids_between, kind_names, a_node, an_element, a_part, a_node_set, &
     a_part_set, a_segment_set, a_shell_set, a_box
+  use deck_segments_m, only : change_edges
   use deck_values_m, only : integer_of, is_bad, map_defined, note_refused, find_id
   implicit none
   private
@@ -25,6 +26,7 @@ module deck_sets_m
   type :: set_t
     integer :: id = 0
     integer :: line = 0
+    integer :: block = 0                !! 0: of beams
     character(:), allocatable :: title
     logical :: of_beams = .false.
     logical :: is_whole = .true.        !! all members on its cards exist
@@ -123,6 +125,7 @@ contains
     deck%maps(kind)%ids = [sets%id]
     deck%maps(kind)%lines = [sets%line]
     call map_defined(deck, kind, 'SID', [sets%of_beams])
+    if (kind == a_part_set) call add_sets(deck, size(model%parts), sets)
   end subroutine read_kind
 
   !> Read a set of nodes, parts, elements or segments: its number, then its members.
@@ -134,13 +137,15 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: head, card
     logical :: is_sound
+    integer, allocatable :: edges(:, :)
     integer :: k, kind
 
     call open_cursor(deck, i_block, cursor)
     if (deck%blocks(i_block)%titled) call next_text(deck, cursor, set%title)
     call next_card(deck, cursor, 1, head)
     set%line = head%line
-    allocate (set%members(64))
+    set%block = i_block
+    allocate (set%members(64), edges(2, 0))
     is_sound = .true.
     kind = a_part
     if (index(deck%blocks(i_block)%name, 'SET_NODE') == 1) kind = a_node
@@ -158,11 +163,16 @@ contains
       case ('SET_SEGMENT')
         call check_edge(deck, card)
         if (.not. any(card%bad)) call read_edge(deck, card, set)
+      case ('SET_PART_ADD')
+        set%n_named = 1 ! read by add_sets
+      case ('SET_SEGMENT_GENERAL')
+        call change_edges(deck, card, model, edges)
       case ('SET_NODE_GENERAL')
         call read_option(deck, card, model, set)
       end select
       is_sound = is_sound .and. .not. any(card%bad)
     end do
+    call append(set, [edges])
     set%is_boundary = index(deck%blocks(i_block)%name, 'SET_2D_SEGMENT') == 1
     set%is_whole = is_sound
     set%members = set%members(:set%n)
@@ -175,6 +185,40 @@ contains
       a_shell_set])
     if (.not. is_bad(head, 'SID')) set%id = integer_of(head, 'SID')
   end subroutine read_set
+
+  !> *SET_PART_ADD: the parts of the sets on its cards, each once.
+  subroutine add_sets(deck, n_part, sets)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: n_part
+    type(set_t), intent(inout) :: sets(:)
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    logical :: is_known(size(sets))
+    integer, allocatable :: kept(:)
+    integer :: i, k, found
+
+    is_known = [(deck%blocks(sets(i)%block)%name /= 'SET_PART_ADD', i=1, size(sets))]
+    do i = 1, size(sets)
+      if (is_known(i)) cycle
+      call first_card(deck, sets(i)%block, cursor, card)
+      sets(i)%members = [(0, k=1, 64)]
+      do while (next_row(deck, cursor, 2, card))
+        do k = 1, count(card%kinds == 'i')
+          if (card%i(k) < 0) call report_field(deck, card, k, 'is not a number of 1 or more')
+          if (card%i(k) < 1) cycle
+          call find_id(deck, a_part_set, card, k, found)
+          if (found == 0) cycle
+          if (.not. is_known(found)) call report_field(deck, card, k, &
+            'is the number of this set or of a later *SET_PART_ADD')
+          call append(sets(i), sets(found)%members)
+        end do
+      end do
+      is_known(i) = .true.
+      call remove_duplicates(sets(i)%members(:sets(i)%n), n_part, kept)
+      call move_alloc(kept, sets(i)%members)
+      sets(i)%n = size(sets(i)%members)
+    end do
+  end subroutine add_sets
 
   !> Append members; 0 is skipped.
   subroutine append(set, members)

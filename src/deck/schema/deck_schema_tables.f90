@@ -181,6 +181,9 @@ module deck_schema_tables_m
     'SET_PART_LIST_GENERATE t', &
     ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as', &
     ' B1BEG:i B1END:i B2BEG:i B2END:i B3BEG:i B3END:i B4BEG:i B4END:i', &
+    'SET_PART_ADD t', &
+    ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as', &
+    ' PSID1:i PSID2:i PSID3:i PSID4:i PSID5:i PSID6:i PSID7:i PSID8:i', &
     'SET_SHELL_LIST t', &
     ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs', &
     ' EID1:i EID2:i EID3:i EID4:i EID5:i EID6:i EID7:i EID8:i', &
@@ -190,6 +193,9 @@ module deck_schema_tables_m
     'SET_SEGMENT t', &
     ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
     ' N1:i>=1 N2:i>=1 N3:i N4:i A1:fs A2:fs A3:fs A4:fs', &
+    'SET_SEGMENT_GENERAL t', &
+    ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
+    ' OPTION:a E1:i E2:i E3:i E4:i E5:i E6:i E7:i', &
     'SET_2D_SEGMENT t', &
     ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs', &
     ' PID:i', &
