@@ -154,3 +154,14 @@ def test_a_run_lies_near_hertz_and_tells_its_estimate(slideline, tmp_path, plain
     (folder / "hertz.glstat.csv").write_text("time,cycle\n0,0\n1e-6,9\n")
     with pytest.raises(UserError, match="did not reach its end"):
         hertz.measure(folder)
+
+
+def test_the_study_of_round_bodies(slideline, tmp_path, plain_pictures):
+    """A press fit with arcs, without, and the pin against its own finest run."""
+    assert command.main(["round", "--quick", "--types", "5", "--only", "[fb][io]*", "--program", slideline, "--folder",
+                         str(tmp_path)]) == 0
+    table = pd.read_csv(tmp_path / "round.csv").set_index(["scene", "form"])
+    mean = table[table["level"] == 1]["mean"]
+    assert mean["fit", "arcs"] < 0.005 and mean["fit", "facets"] > 1.0
+    assert mean["bore", "arcs"] < 0.005 and mean["bore", "facets"] > 0.5
+    assert "| Press fit | 1 | arcs | 1.8e+05 |" in (tmp_path / "doc/studies/round.md").read_text()

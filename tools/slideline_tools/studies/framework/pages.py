@@ -44,6 +44,7 @@ def study(quoted, name, module, sources=CONTACT):
 
 PAGES = {  # quick ones first; `chooses` reads what `speed_accuracy` wrote
     "estimates": study("choosing", "estimates", "estimates"),
+    "round": study("speed_accuracy", "round", "round"),
     "paper": study("paper", "paper", "paper.study"),
     "stability": study("stability", "stability", "stability.study"),
     "speed_accuracy": study("speed_accuracy", "speed-accuracy", "speed_accuracy.study"),
