@@ -86,15 +86,19 @@ def distance(pressure, exact, size, area):
     return float(np.sqrt(np.sum((pressure - exact) ** 2 * area) / np.sum(size ** 2 * area)))
 
 
+def line_contact(folder, level, ctype):
+    """Nodes at rest; half width and peak of Hertz for their force, and by what the springs of the penalty change both."""
+    nodes = last(folder / "hertz.contact.csv")
+    half, peak = lines.hertz(lines.measure(nodes["x"], nodes["length"], nodes["pressure"]).force, RADIUS, MODULUS)
+    stiffness = lines.layer_stiffness(ctype, PENALTY, CYLINDER_CELL / level, BLOCK_CELL / level)
+    return nodes, half, peak, lines.layer_profile(MODULUS / half / stiffness)
+
+
 def line_error(folder, level, ctype):
     """Profile of a line contact against Hertz on the springs of the penalty."""
-    nodes = last(folder / "hertz.contact.csv")
-    x, area, pressure = nodes["x"], nodes["length"], nodes["pressure"]
-    half, peak = lines.hertz(lines.measure(x, area, pressure).force, RADIUS, MODULUS)
-    stiffness = lines.layer_stiffness(ctype, PENALTY, CYLINDER_CELL / level, BLOCK_CELL / level)
-    layer = lines.layer_profile(MODULUS / half / stiffness)
-    return distance(pressure, lines.ellipse(x, half * layer.half_width, peak * layer.peak),
-                    lines.ellipse(x, half, peak), area)
+    nodes, half, peak, layer = line_contact(folder, level, ctype)
+    return distance(nodes["pressure"], lines.ellipse(nodes["x"], half * layer.half_width, peak * layer.peak),
+                    lines.ellipse(nodes["x"], half, peak), nodes["length"])
 
 
 def sphere_error(folder, ctype):

@@ -8,13 +8,12 @@ import numpy as np
 from slideline_tools import scenes
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.results import read
-from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, PENALTY, RADIUS
 from slideline_tools.studies.common import colour, label, markdown_table, marker, save_small, verification, write_page
-from slideline_tools.studies.estimates import last, line_error
+from slideline_tools.studies.estimates import line_contact, line_error
 from slideline_tools.studies.framework.job import Job, Study
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.framework.times import phases
-from slideline_tools.studies.hertz import MODULUS, lines
+from slideline_tools.studies.hertz import lines
 
 TITLES = {"fit": "Press fit", "bore": "Pin in a bore", "hertz": "Hertz"}
 MEASURES = {"mean": "mean pressure", "nodal": "nodal pressures, rms"}
@@ -67,11 +66,8 @@ def measure(one, folder):
     elements = re.search(r" nodes, (\d+) elements", (folder / f"{scene}.log").read_text(encoding="utf-8"))
     row = {"updates": int(elements[1]) * times["element_calls"], "computing": times["computing"]}
     if scene == "hertz":
-        nodes = last(folder / "hertz.contact.csv")
+        nodes, half, _, layer = line_contact(folder, level, ctype)
         found = lines.measure(nodes["x"], nodes["length"], nodes["pressure"])
-        half = lines.hertz(found.force, RADIUS, MODULUS)[0]
-        layer = lines.layer_profile(MODULUS / half / lines.layer_stiffness(ctype, PENALTY, CYLINDER_CELL / level,
-                                                                           BLOCK_CELL / level))
         return {**row, "mean": abs(half * layer.half_width / found.half_width - 1.0), "nodal": line_error(folder, level, ctype)}
     if scene == "fit":
         fit, results = round_fit(scene, level), read(folder / "fit.vtkhdf")
