@@ -231,7 +231,7 @@ build() {
     cmake "$folder" -DPython3_EXECUTABLE="$python" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }
   fi
   say "building build/$type${2:+ with its tests}"
-  [ -t 1 ] || say "this takes minutes the first time; how far it is stands in build/$type.log"
+  [ -t 1 ] || say "the first build takes 3 to 8 minutes; build/$type.log shows its progress"
   if [ -t 1 ]; then
     cmake --build "$folder" --target "${targets[@]}" --parallel "$(nproc)" || exit 1
   elif ! cmake --build "$folder" --target "${targets[@]}" --parallel "$(nproc)" >"$log" 2>&1; then

@@ -9,6 +9,7 @@ module contact_facets_m
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
   use surfaces_m, only : surface_t
+  use units_m, only : units_t, in_units
   implicit none
   private
   public :: follow_arcs, report_facets, coarse_turn
@@ -183,11 +184,12 @@ contains
     way = sagitta(unlike, min(length/max(1, n_run), 1.0_wp/bend))
   end function flattening
 
-  !> At the end: a warning where arcs stand off their segments by much of the penetration, and gaps
-  !> are off by that much, with the number of segments that would do. Where nodes lie opposite each
-  !> other facets lie in each other, however coarse: gaps are right.
-  subroutine report_facets(contact, estimate, log)
+  !> Warn at the end of the run where facets change gaps by more than the noticed part of the
+  !> penetration, with the number of segments at which they would not. Where nodes lie opposite each
+  !> other gaps are right, however coarse the facets.
+  subroutine report_facets(contact, units, estimate, log)
     type(contact_t), intent(in) :: contact
+    type(units_t), intent(in) :: units
     type(contact_estimate_t), intent(in) :: estimate
     type(log_t), intent(inout) :: log
     character(:), allocatable :: text
@@ -197,14 +199,19 @@ contains
       if (.not. min(height, estimate%facet_error) > noticed_part*depth) return
       text = trim(merge('slave ', 'master', estimate%arc_side == 1))
       if (contact%is_self) text = 'surface'
-      text = 'interface '//to_text(contact%id)//': pressure is made by facets: arcs of its '//text &
-        //' (radius '//to_text(1.0_wp/curvature)//') stand up to '//to_text(height) &
-        //' off their segments, which puts gaps off by up to '//to_text(estimate%facet_error) &
-        //', more than a tenth of the largest penetration and flattening of the arcs, ' &
-        //'interference included, '//to_text(depth)//'; it has ' &
-        //to_text(nint(segments_of(curvature, height)))//' segments on a full circle'
-      if (depth > 0.0_wp) text = text//', ' &
-        //to_text(ceiling(segments_of(curvature, noticed_part*depth)))//' would do'
+      text = 'interface '//to_text(contact%id)//': flat facets govern the contact pressure: its ' &
+        //text//' (radius '//to_text(1.0_wp/curvature)//in_units(units, 'L')//', ' &
+        //to_text(nint(segments_of(curvature, height)))//' segments on a full circle) is up to ' &
+        //to_text(height)//' inside its arcs, which changes gaps by up to ' &
+        //to_text(estimate%facet_error)//', more than a tenth of the penetration ' &
+        //to_text(depth)//' (interference and flattening included); take arcs (SMOOTH '
+      if (contact%largest_turn > 0.0_wp) then
+        text = text//'above its present value)'
+      else
+        text = text//'0, not -1)'
+      end if
+      if (depth > 0.0_wp) text = text//' or ' &
+        //to_text(ceiling(segments_of(curvature, noticed_part*depth)))//' segments'
       call warn(log, text)
     end associate
   end subroutine report_facets

@@ -1,12 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> What the log says about an interface.
+!> Log of an interface.
 module contact_log_m
   use contact_facets_m, only : coarse_turn
   use contact_dispatch_m, only : formulation_t, formulation_of, is_strict
   use contact_penalty_m, only : rigid_factor, mean_length, built_in_penalty, side_stiffness
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, friction_rule_t, is_tied, breaks, kind_text, &
-    penalty_share, penalty_implicit
+    penalty_share, penalty_implicit, penalty_per_node, penalty_distributed
   use law_state_m, only : is_held, is_broken
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text, percent
@@ -26,6 +26,9 @@ module contact_log_m
   real(wp), parameter :: dear_share = 0.5_wp
   !> Share of the built-in penalty, which is that of ten elements, below which a tie holds little.
   real(wp), parameter :: soft_tie = 0.1_wp
+  !> Compliance of springs over that of elements above which a penalty in absolute units is far too
+  !> soft: 200 times that of the default between like bodies.
+  real(wp), parameter :: softest = 1000.0_wp
   !> Slave over master from where on implicit springs alternate: segments shorter by the one factor,
   !> elements stiffer by the other; and the factor on K L/A that softens it.
   real(wp), parameter :: finer = 0.75_wp, stiffer = 2.0_wp, soft_factor = 1.0_wp
@@ -51,12 +54,12 @@ contains
     if (contact%chosen_by_keyword) title = title//', chosen by keyword'
     if (allocated(contact%reason)) title = title//', chosen by the program (CTYPE 0): ' &
       //contact%reason
-    if (contact%target > 0.0_wp) title = title//'; its estimate is to stay at or below ' &
+    if (contact%target > 0.0_wp) title = title//'; target of its error estimate ' &
       //to_text(contact%target)
     call write_log(log, title)
     if (contact%is_self) then
-      call write_log(log, '  a surface with itself: '//surface_text(contact%slave, model) &
-        //', met from either side by '//to_text(formulation%self_share)//' of the penalty')
+      call write_log(log, '  self contact: '//surface_text(contact%slave, model) &
+        //', either side with '//to_text(formulation%self_share)//' of the penalty')
     else
       call write_log(log, '  slave: '//surface_text(contact%slave, model))
       call write_log(log, '  master: '//surface_text(contact%master, model))
@@ -111,10 +114,11 @@ contains
     real(wp) :: turn
 
     turn = coarse_turn(surface, positions, contact%largest_turn)*180.0_wp/acos(-1.0_wp)
-    if (turn > 0.0_wp) call warn(log, 'interface '//to_text(contact%id)//': its '//side &
-      //' surface turns by '//to_text(turn)//' degrees from segment to segment, more than ' &
-      //'SMOOTH ('//to_text(nint(contact%largest_turn*180.0_wp/acos(-1.0_wp)))//'): flat facets ' &
-      //'there, no arcs; SMOOTH '//to_text(ceiling(turn))//' makes them arcs')
+    if (turn > 0.0_wp) call warn(log, 'interface '//to_text(contact%id)//': flat facets stand ' &
+      //'for a circle of its '//side//' surface, whose segments turn by up to '//to_text(turn) &
+      //' degrees, more than SMOOTH ('//to_text(nint(contact%largest_turn*180.0_wp &
+      /acos(-1.0_wp)))//'): contact pressures are uneven there; set SMOOTH to ' &
+      //to_text(ceiling(turn))//' for arcs, or -1 if facets are meant')
   end subroutine warn_of_coarse_circle
 
   !> Implicit springs, and a warning where the slave is both finer and stiffer: its nodes take turns
@@ -173,14 +177,14 @@ contains
     if (memory%slave_penalty < soft_tie*built_in_penalty(contact, model)) call warn(log, &
       'interface '//to_text(contact%id)//': its ties are as soft as ' &
       //to_text(10.0_wp*built_in_penalty(contact, model)/memory%slave_penalty)//' elements of ' &
-      //'its surfaces, so what they hold moves apart; PEN 10 with PUNIT 2, the default, is as ' &
-      //'stiff as one')
+      //'its surfaces, so that tied surfaces separate under load; PEN 10 with PUNIT 2, the ' &
+      //'default, is as stiff as one')
     holds = tied_nodes(memory, [is_held])
     n = size(memory%ties%side)
     call write_log(log, '  tied: '//to_text(count(holds(:memory%n_slave)))//' of ' &
       //to_text(memory%n_slave)//' slave nodes, '//to_text(n) &
       //' springs of area '//to_text(sum(memory%tie_points%area(:memory%tie_points%n))) &
-      //', reach '//to_text(tie_distance(contact, model)) &
+      //', search radius '//to_text(tie_distance(contact, model)) &
       //in_units(model%controls%units, 'L'))
     if (breaks(contact)) call write_log(log, '  breaks at a tension of ' &
       //to_text(contact%strength(1))//' or a shear of '//to_text(contact%strength(2)) &
@@ -197,7 +201,8 @@ contains
     end do
     if (n > most_named) names = names//' and '//to_text(n - most_named)//' more'
     call warn(log, 'interface '//to_text(contact%id)//': '//to_text(n)//' of ' &
-      //to_text(memory%n_slave)//' slave nodes have nothing within reach and are not tied:'//names)
+      //to_text(memory%n_slave)//' slave nodes have no master segment within the search ' &
+      //'radius (SRCH) and are not tied:'//names)
   end subroutine log_ties
 
   !> What ties cost: the stable step of the elements alone, and with the springs. A warning where
@@ -218,8 +223,8 @@ contains
     end if
   end subroutine report_tie_step
 
-  !> How far the springs are loaded in beside the elements behind both surfaces, by the bulk
-  !> modulus of these; rigid ones are not loaded in.
+  !> Compliance of the springs over that of the elements at both surfaces (bulk modulus; rigid ones
+  !> have none), and a warning of an absolute penalty that is far too soft.
   subroutine log_softness(contact, model, memory, log, softness)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -238,12 +243,17 @@ contains
     rows = row_compliance(contact%slave, model) + row_compliance(contact%master, model)
     if (.not. (stiffness > 0.0_wp .and. rows > 0.0_wp)) return
     softness = 1.0_wp/(stiffness*rows)
-    call write_log(log, 'interface '//to_text(contact%id)//': under a pressure its springs are ' &
-      //'pressed in '//to_text(softness)//' times as far as the elements behind them, one row on ' &
-      //'either side')
+    call write_log(log, 'interface '//to_text(contact%id)//': the compliance of ' &
+      //'its springs is '//to_text(softness)//' times that of the elements at the surfaces (one ' &
+      //'row on either side)')
+    if (softness > softest .and. any(contact%penalty_unit == [penalty_per_node, &
+      penalty_distributed])) call warn(log, 'interface '//to_text(contact%id)//': PEN ' &
+      //to_text(contact%penalty)//' with PUNIT '//to_text(contact%penalty_unit)//' (0 where ' &
+      //'blank) is '//to_text(softness)//' times as soft as the elements at the surfaces: bodies ' &
+      //'penetrate each other; PEN 1 with PUNIT 2 is the built-in estimate')
   end subroutine log_softness
 
-  !> How far a pressure presses in the elements behind a surface: A/(K L), m^2/N.
+  !> Compliance of the elements at a surface under a pressure: A/(K L), m^2/N.
   pure function row_compliance(surface, model) result(compliance)
     type(surface_t), intent(in) :: surface
     type(model_t), intent(in) :: model
@@ -313,8 +323,8 @@ contains
     integer :: p, k
 
     if (memory%points%n == 0 .and. allocated(contact%interference)) call warn(log, 'interface ' &
-      //to_text(contact%id)//': its curve of interference (LCINT) has no effect, for nothing ' &
-      //'overlaps at the start')
+      //to_text(contact%id)//': its curve of interference (LCINT) has no effect: surfaces do not ' &
+      //'overlap at time zero')
     if (memory%points%n == 0) return
     ! What ties hold has no force of contact.
     is_loaded = .true.
@@ -329,20 +339,19 @@ contains
       memory%points%slave_nodes(k, p))))//': '//to_text(-memory%points%gap(p)) &
       //in_units(model%controls%units, 'L')
     if (allocated(contact%interference)) then
-      call write_log(log, 'interface '//to_text(contact%id)//': interference'//text//'; it grows ' &
-        //'from 0 to that by curve '//to_text(contact%interference%id)//' until ' &
+      call write_log(log, 'interface '//to_text(contact%id)//': interference'//text//'; curve ' &
+        //to_text(contact%interference%id)//' (LCINT) applies it from 0 to the whole until ' &
         //to_text(contact%interference%abscissa(size(contact%interference%abscissa))) &
         //in_units(model%controls%units, 'T'))
       return
     end if
-    call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text//', force of ' &
-      //'that point '//to_text(memory%points%pressure(p)*memory%points%area(p)) &
+    call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text//', contact ' &
+      //'force there '//to_text(memory%points%pressure(p)*memory%points%area(p)) &
       //per_depth(model%controls%units, 'F', model%is_axisymmetric) &
-      //'; it is kept, so that the run starts with these forces')
+      //'; the run starts with such forces; move the bodies apart, or apply the overlap by LCINT')
   end subroutine report_initial_contact
 
-  !> At the end of the run: how much of a tie has broken, and a warning of first contacts that were
-  !> too deep and were let go.
+  !> Report at the end of the run failed ties and excluded first contacts.
   subroutine report_end(contact, units, memory, log)
     type(contact_t), intent(in) :: contact
     type(units_t), intent(in) :: units
@@ -354,16 +363,16 @@ contains
     name = 'interface '//to_text(contact%id)//': '
     n = memory%slave_status%n_released + memory%master_status%n_released
     if (n > 0) call warn(log, name//to_text(n) &
-      //' first contacts were deeper than the limit and were released; SRCH sets the limit')
+      //' first contacts were deeper than the limit and were excluded; SRCH sets the limit')
     if (.not. breaks(contact)) return
     n = count(memory%ties%state == is_broken)
     if (n == 0) then
-      call write_log(log, name//'nothing of its ties has broken')
+      call write_log(log, name//'no tie failed')
     else
-      call write_log(log, name//'of its ties '//to_text(n)//' of ' &
-        //to_text(count(memory%ties%state == is_held) + n)//' places have broken, from time ' &
+      call write_log(log, name//to_text(n)//' of ' &
+        //to_text(count(memory%ties%state == is_held) + n)//' tie points failed, from time ' &
         //to_text(memory%ties%first_break)//' to '//to_text(memory%ties%last_break) &
-        //'; what they held, '//to_text(memory%ties%spent) &
+        //'; their stored energy, '//to_text(memory%ties%spent) &
         //per_depth(units, 'F L', contact%is_axisymmetric)//', stays in the energy of contact')
     end if
   end subroutine report_end

@@ -37,7 +37,7 @@ module deck_m
     known_refused
   use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : read_words, edit_controls
-  use deck_cards_m, only : cursor_t, open_cursor
+  use deck_cards_m, only : cursor_t, open_cursor, check_heading
   use deck_echo_m, only : echo_model, write_effective
   use text_m, only : upper_case
   use deck_values_m, only : note_refused
@@ -114,6 +114,7 @@ contains
     call edit_controls(deck)
     do i = 1, deck%n_block
       if (deck%blocks(i)%is_honoured) call check_empty(deck, i)
+      if (deck%blocks(i)%is_honoured) call check_heading(deck, i)
       if (deck%blocks(i)%is_empty) call note_refused_keyword(deck, i, is_ended)
     end do
     is_ended = is_ended .or. any(deck%blocks(:deck%n_block)%name == 'CONTROL_TERMINATION')

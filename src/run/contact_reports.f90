@@ -146,7 +146,7 @@ contains
           .not. state%contacts(i)%slave_penalty > 0.0_wp) cycle
         if (estimate%bodies > 0.0_wp .and. estimate%stored > noticed_part*estimate%bodies) &
           call report_soft_springs(model, contact, estimate, log)
-        call report_facets(contact, estimate, log)
+        call report_facets(contact, model%controls%units, estimate, log)
       end associate
     end do
     do i = 1, size(model%contacts)
@@ -168,8 +168,8 @@ contains
     character(:), allocatable :: text
 
     text = 'contact pressure and the stress behind it differ by ' &
-      //percent(sqrt(estimate%misfit), sqrt(estimate%load))//' (r.m.s. of ' &
-      //to_text(estimate%n)//' instant(s)), by '//percent(estimate%at_heaviest, 1.0_wp) &
+      //percent(sqrt(estimate%misfit), sqrt(estimate%load))//' (r.m.s., ' &
+      //'instants: '//to_text(estimate%n)//'), by '//percent(estimate%at_heaviest, 1.0_wp) &
       //' at the largest load'
     if (has_waves(estimate)) text = text//', without waves by ' &
       //percent(sqrt(estimate%still), sqrt(estimate%load))

@@ -25,6 +25,9 @@ module error_indicator_m
 
   !> The second difference of uncorrelated noise has 6 times its variance.
   real(wp), parameter :: of_noise = 6.0_wp
+  !> Resultant over the sum of nodal forces below which the resultant has no noise of its own: on
+  !> closed rings it vanishes.
+  real(wp), parameter :: resultant_share = 0.1_wp
 
 contains
 
@@ -74,7 +77,7 @@ contains
         result%estimate = 0.0_wp
         if (side%load > 0.0_wp) result%estimate = sqrt(side%misfit/side%load)
         if (state%cycle > state%estimates(i)%cycle) call add_instant(state%cycle, state%dt, side, &
-          result, state%estimates(i))
+          result, sum(norm2(slaves%force, 1)), state%estimates(i))
       end associate
     end do
   end subroutine evaluate_indicators
@@ -129,11 +132,12 @@ contains
   end subroutine add_side
 
   !> Add one instant to the sums of the run.
-  pure subroutine add_instant(cycle, dt, side, result, estimate)
+  pure subroutine add_instant(cycle, dt, side, result, nodal_forces, estimate)
     integer, intent(in) :: cycle
     real(wp), intent(in) :: dt
     type(contact_estimate_t), intent(in) :: side
     type(interface_result_t), intent(in) :: result
+    real(wp), intent(in) :: nodal_forces !! sum of their magnitudes, N/m
     type(contact_estimate_t), intent(inout) :: estimate
     real(wp) :: ratio
 
@@ -152,7 +156,7 @@ contains
       estimate%springs = estimate%springs + result%stored
       estimate%rows = estimate%rows + side%rows
     end if
-    if (estimate%n > 2) then
+    if (estimate%n > 2 .and. norm2(result%slave_force) >= resultant_share*nodal_forces) then
       estimate%jumps = estimate%jumps + sum((result%slave_force - estimate%force &
         - ratio*(estimate%force - estimate%previous))**2) &
         *of_noise/(1.0_wp + (1.0_wp + ratio)**2 + ratio**2)

@@ -372,7 +372,7 @@ contains
     end do
     warned = n > 0
     if (warned) call warn(log, 'node '//to_text(model%mesh%node_id(last)) &
-      //' has crossed the axis (radius '//to_text(least)//', '//to_text(n)//' node(s) in all) at ' &
+      //' has crossed the axis (radius '//to_text(least)//'; nodes beyond it: '//to_text(n)//') at ' &
       //'cycle '//to_text(state%cycle)//', time '//to_text(state%time)//': results are invalid ' &
       //'from here on')
   end subroutine check_radii

@@ -155,12 +155,12 @@ contains
           if (norm2(force_on(state, ending%where)) > 0.0_wp) found = 'node '// &
             to_text(ending%id)//' is in contact (*TERMINATION_NODE)'
         case (end_body_displacement)
-          found = beyond('body '//to_text(ending%id)//' has gone to ', 'displacement ', &
+          found = beyond('body '//to_text(ending%id)//' has moved to ', 'displacement ', &
             state%rigids(ending%where)%displacement(ending%direction), ending, &
             ' (*TERMINATION_BODY)')
         case (end_body_distance)
           way = norm2(state%rigids(ending%where)%displacement(1:2))
-          if (way >= ending%most) found = 'body '//to_text(ending%id)//' has gone ' &
+          if (way >= ending%most) found = 'body '//to_text(ending%id)//' has moved by ' &
             //to_text(way)//' (*TERMINATION_BODY)'
         case (end_contact)
           call check_contact_end(ending, state, state%quiet_since(i), found)
@@ -204,7 +204,7 @@ contains
     end if
     if (since < 0.0_wp) since = state%time
     if (state%time - since >= ending%duration) found = 'interface '//to_text(ending%id) &
-      //' bears no force (*TERMINATION_CONTACT)'
+      //' has no contact force (*TERMINATION_CONTACT)'
   end subroutine check_contact_end
 
   !> Contact force on a node, of all interfaces.

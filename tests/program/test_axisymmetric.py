@@ -76,8 +76,8 @@ def test_what_is_settled_is_told(exe, tmp_path):
     done = run(exe, tmp_path, "i=job.k", "d=out")
     log = (tmp_path / "out/job.log").read_text()
     assert "per radian" in log
-    assert "3 node(s) at r = 0 are fixed in r; rigid bodies move along the axis only" in log
-    assert "18 node(s) on the axis or of rigid bodies have an initial velocity in r" in done.stderr + log
+    assert "nodes at r = 0, which are fixed in r: 3; rigid bodies move along the axis only" in log
+    assert "nodes on the axis or of rigid bodies whose initial velocity in r is ignored: 18, " in done.stderr + log
     with h5py.File(tmp_path / "out/job.vtkhdf") as stream:
         moved = stream["VTKHDF/PointData/displacement"][-30:]
         time = stream["VTKHDF/Steps/Values"][-1]
@@ -140,7 +140,7 @@ def test_radial_loads_on_the_axis_are_told(exe, tmp_path):
     for form, told in ((15, True), (13, False)):
         (tmp_path / "job.k").write_text(disc(form))
         said = run(exe, tmp_path, "check", "job.k").stderr
-        assert ("*LOAD_NODE_SET: 5 load(s) in r act on nodes on the axis" in said) == told, said
+        assert ("*LOAD_NODE_SET: loads in r without effect, on nodes on the axis (x = 0), which are fixed in r: 5, " in said) == told, said
 
 
 def test_units_of_contact_are_per_radian(exe, tmp_path):
@@ -158,10 +158,10 @@ def test_units_of_contact_are_per_radian(exe, tmp_path):
     told = "*CONTROL_UNITS\n        mm       sec  mtrc_ton\n"
     named = re.compile(r"\d (?:k?[NJ]|m?m|m?s)(?:[/ ]|$)", re.M)
     for form, units, right in (
-            (15, "", (r"dissipated \S+ per radian\n", r"force of that point \S+ per radian; it is kept", "times the radius, per radian")),
-            (15, told, (r"dissipated \S+ N mm per radian\n", r"node \d+: \S+ mm, force of that point \S+ N per radian; it is kept")),
-            (13, "", (r"dissipated \S+\n", r"node \d+: \S+, force of that point \S+; it is kept")),
-            (13, told, (r"dissipated \S+ N mm/mm\n", r"force of that point \S+ N/mm; it is kept", r"mean length \S+ mm\n",
+            (15, "", (r"dissipated \S+ per radian\n", r"contact force there \S+ per radian; the run", "times the radius, per radian")),
+            (15, told, (r"dissipated \S+ N mm per radian\n", r"node \d+: \S+ mm, contact force there \S+ N per radian; the run")),
+            (13, "", (r"dissipated \S+\n", r"node \d+: \S+, contact force there \S+; the run")),
+            (13, told, (r"dissipated \S+ N mm/mm\n", r"contact force there \S+ N/mm; the run", r"mean length \S+ mm\n",
                         r" N/mm per slave node = \S+ N/mm\^2; "))):
         (tmp_path / "job.k").write_text(rubbing(form).replace("*END", units + "*END"))
         run(exe, tmp_path, "i=job.k", "d=out")
@@ -207,12 +207,12 @@ def test_nodes_next_to_the_axis_are_told(exe, tmp_path):
             deck.fix(ids[::4], x=1)
         (tmp_path / "job.k").write_text(deck.text())
         said = run(exe, tmp_path, "check", "job.k").stderr
-        assert ("4 node(s) lie next to the axis but not on it" in said) == told, said
+        assert ("nodes that lie next to the axis but not on it and form a bore: 4, " in said) == told, said
         # What is next to the axis does not hang on how long the bodies are.
         deck.mesh(*grid(1, 1, origin=(1.0, 1.0e5)))
         (tmp_path / "job.k").write_text(deck.text())
         said = run(exe, tmp_path, "check", "job.k").stderr
-        assert ("4 node(s) lie next to the axis but not on it" in said) == told, said
+        assert ("nodes that lie next to the axis but not on it and form a bore: 4, " in said) == told, said
 
 
 def cone_on_disc(kind, sides):

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from conftest import columns, numbers, some_types
+from conftest import columns, drop, numbers, some_types
 from meshes import Deck, grid
 from test_implicit import implicit
 from test_restart import assert_same, part_of, with_files
@@ -109,10 +109,18 @@ def named(line):
     return {"factor": float(factor), "ecdt": int(step)}
 
 
+@pytest.mark.parametrize("penalty, unit, warns", [(1.0, 0, True), (1.0, 1, True), (1.0, 2, False), (1.0e6, 0, False)])
+def test_a_factor_without_its_punit_is_named(slideline, penalty, unit, warns):
+    """PEN 1 with a blank PUNIT is 1 N/m: bodies of 1e6 N/m^2 pass through each other."""
+    done = slideline(f"pen={penalty}", f"punit={unit}", deck=drop(end_time=0.001))
+    assert done.returncode == 0, done.stderr
+    assert (f"with PUNIT {unit} (0 where blank) is" in done.stderr) == warns, done.stderr
+
+
 def test_springs_that_store_much_of_a_blow_on_a_soft_body_are_told(slideline, tmp_path, fall):
     log, lines, _ = fall("stock")
     # Ten elements of the soft side by either pass, beside one of the soft and one of the hard row, which is 1e4 times as stiff.
-    found = re.search(r"pressed in (\S+) times as far as the elements behind them", log)
+    found = re.search(r"compliance of its springs is (\S+) times that of the elements", log)
     assert float(found[1]) == pytest.approx(5.0 / (1.0 + 1.0e-4), rel=1.0e-4)
     line, = lines
     assert line.strip().startswith("warning:")
@@ -170,8 +178,8 @@ def press_fit(kind, shaft=48, hub=60, static=False, fit=1.0e-3, form=13, turn=0.
     return deck.output(plot=1.0, glstat=0.1)
 
 
-FACETS = re.compile(r"warning: interface 1: pressure is made by facets: arcs of its slave \(radius (\S+)\) stand up to (\S+) off their "
-                    r"segments, .* included, (\S+); it has (\d+) segments on a full circle, (\d+) would do")
+FACETS = re.compile(r"warning: interface 1: flat facets govern the contact pressure: its slave \(radius (\S+), (\d+) segments on a full "
+                    r"circle\) is up to (\S+) inside its arcs, .* penetration (\S+) \(interference .*\(SMOOTH 0, not -1\) or (\d+) segments")
 
 
 @pytest.mark.parametrize("static", (False, True))
@@ -181,12 +189,12 @@ def test_facets_of_a_press_fit_are_told(slideline, tmp_path, kind, static):
     done = slideline(deck=press_fit(kind, static=static))
     assert done.returncode == 0, done.stderr
     found, = FACETS.findall((tmp_path / "job.log").read_text())
-    radius, height, depth = (float(text) for text in found[:3])
+    radius, height, depth = (float(found[k]) for k in (0, 2, 3))
     assert radius == pytest.approx(1.0005, abs=1.0e-4)
     assert height == pytest.approx(0.5 * radius * (np.pi / 48.0) ** 2, rel=0.01)
     # The interference, and what it makes curvatures differ by over one radian; the gap of type 4 is that of another place.
     assert depth == pytest.approx(1.125e-3, rel=1.0 if kind == 4 else 0.02)
-    assert int(found[3]) == 48 and int(found[4]) == pytest.approx(np.pi * np.sqrt(radius / (0.2 * depth)), rel=0.01)
+    assert int(found[1]) == 48 and int(found[4]) == pytest.approx(np.pi * np.sqrt(radius / (0.2 * depth)), rel=0.01)
 
 
 @pytest.mark.parametrize("more, warns", [
@@ -197,7 +205,7 @@ def test_facets_that_match_or_are_fine_or_never_touch_are_not(slideline, tmp_pat
     """Nodes that lie opposite each other match at any interference, though one circle is larger than the other by that."""
     done = slideline(deck=press_fit(5, **more))
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / "job.log").read_text().count("pressure is made by facets") == int(warns)
+    assert (tmp_path / "job.log").read_text().count("flat facets govern the contact pressure") == int(warns)
 
 
 def test_facets_that_would_do_are_the_same_in_all_units(slideline, tmp_path):
@@ -215,8 +223,8 @@ def test_facets_that_would_do_are_the_same_in_all_units(slideline, tmp_path):
             deck.lines[i] = ",".join(fields)
         assert slideline(deck=deck).returncode == 0
         found += FACETS.findall((tmp_path / "job.log").read_text())
-    assert found[0][3:] == found[1][3:]
-    assert float(found[1][2]) == pytest.approx(1.0e3 * float(found[0][2]), rel=1.0e-5)
+    assert found[0][1::3] == found[1][1::3]
+    assert float(found[1][3]) == pytest.approx(1.0e3 * float(found[0][3]), rel=1.0e-5)
 
 
 def test_a_cylinder_on_a_plane_is_made_by_facets_where_few_of_them_touch(slideline, tmp_path):
@@ -231,7 +239,7 @@ def test_a_cylinder_on_a_plane_is_made_by_facets_where_few_of_them_touch(slideli
         deck.add("*CONTACT_2D_SLIDELINE", (1, 2, 7, 2, 2.0 * n), (0.0, 1.0e20, 1), FLAT)
         done = slideline(deck=deck.output(plot=2.0, glstat=0.02))
         assert done.returncode == 0, done.stderr
-        assert (tmp_path / "job.log").read_text().count("pressure is made by facets") == int(warns), (n, speed)
+        assert (tmp_path / "job.log").read_text().count("flat facets govern the contact pressure") == int(warns), (n, speed)
 
 
 @pytest.mark.parametrize("hub, words, warns", [(16, (), True), (16, ("smooth=23",), False), (60, (), False), (16, ("smooth=-1",), False)])
@@ -239,5 +247,5 @@ def test_a_circle_too_coarse_for_arcs_is_named(slideline, tmp_path, hub, words, 
     """16 segments turn by 22.5 degrees: facets, beside the arcs of the shaft, unless SMOOTH allows that."""
     done = slideline(*(words or ("smooth=0",)), "endtim=1e-3", deck=press_fit(5, hub=hub))
     assert done.returncode == 0, done.stderr
-    assert ("its master surface turns by 2.250000E+01 degrees from segment to segment, more than SMOOTH (16)"
+    assert ("a circle of its master surface, whose segments turn by up to 2.250000E+01 degrees, more than SMOOTH (16)"
             in (tmp_path / "job.log").read_text()) == warns

@@ -175,7 +175,7 @@ def test_initial_penetration_is_one_warning(slideline, depth):
     done = slideline("d=i", deck=pushed_in(depth))
     assert done.returncode == 0, done.stderr
     found = re.findall(r"warning: interface 1: initial penetration at (\d+) points, deepest at "
-                       r"node \d+: (\S+), force of", done.stderr)
+                       r"node \d+: (\S+), contact force", done.stderr)
     assert [(int(n), float(d)) for n, d in found] == ([(4, depth)] if depth > 1.0e-3 else [])
     assert f"Warnings            = {len(found)}" in done.stdout
 
@@ -200,7 +200,7 @@ def test_released_first_contacts_are_warned_of(slideline):
     done = slideline("d=i", deck=deck)
     assert done.returncode == 0, done.stderr
     assert re.search(r"warning: interface 1: \d+ first contacts were deeper than the limit and were "
-                     r"released", done.stderr)
+                     r"excluded; SRCH", done.stderr)
     assert "Warnings            = 1" in done.stdout
 
 

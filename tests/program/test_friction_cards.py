@@ -89,6 +89,16 @@ def test_friction_that_is_likely_not_meant(asked, cards, control, words, warning
     assert not warning or warning in said, said
 
 
+def test_a_zero_in_tfac_is_the_default(slideline, tmp_path):
+    """As on a zero-filled card of LS-DYNA: the friction of a blank TFAC, bit for bit."""
+    found = []
+    for card_3 in ("", "0.0,0.0,0,0.0"):
+        assert slideline(deck=deck(ours("0.3", card_3))).returncode == 0
+        log = (tmp_path / "job.log").read_text()
+        found.append((log.count("tangential penalty 1.000000E+00 of the normal one"), (tmp_path / "job.rcforc.csv").read_bytes()))
+    assert found[0][0] == 1 and found[0] == found[1]
+
+
 @pytest.mark.parametrize("word", ["fs=-0.1", "fd=-0.1", "dc=-1", "vc=-1", "fs=x", "tfac=0"])
 def test_no_friction_on_the_command_line(asked, word):
     said = asked(deck(ours()), word)[1]

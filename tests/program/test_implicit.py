@@ -166,8 +166,8 @@ def test_contact_at_the_start_is_told_once(slideline, tmp_path, dynamic):
             if not (dynamic and re.search("created energy|energy ratio", line))]
     assert len(told) == 1, told
     # Competence length 1/3 of a slave node inside; 1/6 at the first one, whose depth is the same.
-    assert re.search(r"interface 1: initial penetration at 3 points, deepest at node 16: 4\.0+E-03, force of that "
-                     r"point 2\.0+E\+03; it is kept", told[0]), told
+    assert re.search(r"interface 1: initial penetration at 3 points, deepest at node 16: 4\.0+E-03, contact force "
+                     r"there 2\.0+E\+03; the run starts with", told[0]), told
     log = (tmp_path / "x" / "job.log").read_text()
     assert log.count(told[0]) == 1
     done = slideline("check", "job.k", "--json")

@@ -103,4 +103,4 @@ def test_what_the_log_warns_of(slideline):
     done = slideline(deck=pressed(5, curve=((0.0, 0.0), (0.5, 1.0))))
     assert done.returncode == 0 and ", after the end time; the full overlap is not reached" in done.stdout + done.stderr
     done = slideline(deck=pressed(5, overlap=-1.0e-3))
-    assert done.returncode == 0 and "(LCINT) has no effect, for nothing overlaps" in done.stdout + done.stderr
+    assert done.returncode == 0 and "(LCINT) has no effect: surfaces do not overlap" in done.stdout + done.stderr

@@ -66,7 +66,7 @@ def test_damping_beyond_the_step_is_told(slideline, tmp_path, share, turns):
     assert v[4] / v[3] == pytest.approx(keep, rel=1.0e-9) and abs(v[4]) < abs(v[3]) and (v[4] * v[3] < 0.0) == turns
     if told:
         assert "VALDMP" in told[0] and ("change sign" in told[0]) == turns
-        left, meant = (float(text) for text in re.search(r"leaves (\S+) of a velocity where exp\(-D dt\) = (\S+) ", told[0]).groups())
+        left, meant = (float(text) for text in re.search(r"multiplies velocities by (\S+), the exact factor exp\(-D dt\) is ([^ ,;]+)", told[0]).groups())
         assert left == pytest.approx(keep, rel=1.0e-4) and meant == pytest.approx(math.exp(-share), rel=1.0e-4)
 
 

@@ -126,7 +126,7 @@ def test_a_wall_sees_nodes_within_its_offset(slideline, tmp_path):
 
 def test_nodes_of_rigid_bodies_do_not_see_a_wall(slideline, tmp_path):
     assert slideline("d=out", deck=flying(0.0, rigid=True)).returncode == 0
-    assert "4 node(s) of rigid bodies pass the wall; the first is" in (tmp_path / "out/job.log").read_text()
+    assert "nodes of rigid bodies, which pass the wall: 4, the first at node" in (tmp_path / "out/job.log").read_text()
 
 
 def test_implicit_motion_by_acceleration(slideline, tmp_path):

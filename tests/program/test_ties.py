@@ -105,7 +105,7 @@ def test_what_breaks_stays_broken(slideline, tmp_path, scene, kind):
     broken = [{n for n, t, s in zip(node, time, state) if t == at and s == 4.0} for at in sorted(set(time))]
     assert not broken[0] and broken[-1]
     assert all(before <= after for before, after in zip(broken, broken[1:]))
-    assert "places have broken, from time" in (one / "job.log").read_text()
+    assert "tie points failed, from time" in (one / "job.log").read_text()
     ratio = numbers(one / "job.glstat.csv", "energy_ratio")
     assert max(abs(value - 1.0) for value in ratio) < 2.0e-3
     # contact behind the ties is told as part of the interface
@@ -223,7 +223,7 @@ def test_what_is_out_of_reach_is_named(slideline, tmp_path):
     done = slideline("d=out", deck=tied(5, columns=(12, 10), overhang=0.3))
     assert done.returncode == 0, done.stderr
     # node 11 is beyond the master too, but its segment is tied in part
-    assert "interface 1: 2 of 13 slave nodes have nothing within reach and are not tied: 12 13" in done.stderr
+    assert "interface 1: 2 of 13 slave nodes have no master segment within the search radius (SRCH) and are not tied: 12 13" in done.stderr
     assert "with its ties the stable step is" in (tmp_path / "out/job.log").read_text()
 
 

@@ -4,18 +4,19 @@
 module deck_cards_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use text_m, only : read_integer, number_good
-  use deck_lines_m, only : deck_t, location_t, line_text, line_warning, replace_line, flag_blank, &
-    flag_parameter, block_of_line, given_by, format_long, max_field
+  use text_m, only : read_integer, read_real, number_good
+  use deck_lines_m, only : deck_t, location_t, line_text, line_error, line_warning, replace_line, &
+    flag_blank, flag_comma, flag_parameter, block_of_line, given_by, format_long, max_field
   use deck_fields_m, only : card_spec_t, make_spec, field_number, card_t, begin_card, cut_card, &
-    read_numbers, field_text, field_error
+    cut_text, read_numbers, field_text, field_error
   use deck_schema_m, only : table, keyword_cards, refusal_reason, expectations, &
     text_of_field, max_card
   use deck_parameter_table_m, only : look_up
   implicit none
   private
   public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, &
-    next_text, next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field
+    next_text, next_heading, check_heading, check_rest, report_field, row_comes, reject_field, &
+    warn_of_field
 
   !> Position of the reader in a block.
   type :: cursor_t
@@ -167,6 +168,69 @@ contains
     if (deck%blocks(cursor%block)%titled .and. cursor%line <= cursor%last) &
       cursor%line = cursor%line + 1
   end subroutine skip_title
+
+  !> Report a heading without _TITLE or _ID, or one of these without a heading, and read the block
+  !> as meant: one error instead of those of its cards.
+  subroutine check_heading(deck, i_block)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    integer :: numbers(2), texts(2)
+    logical :: is_card(2)
+    integer :: k
+
+    call open_cursor(deck, i_block, cursor)
+    if (index(cursor%options, 't') == 0 .or. cursor%specs(1)%kinds(1) == 'a') return
+    is_card = .false.
+    numbers = 0
+    texts = 0
+    do k = 1, min(2, cursor%last - cursor%line + 1)
+      if (iand(deck%flags(cursor%line + k - 1), flag_parameter) /= 0) return
+      call begin_card(cursor%specs(1), cursor%line + k - 1, card)
+      call count_fields(line_text(deck, cursor%line + k - 1), cursor%specs(1), &
+        iand(deck%flags(cursor%line + k - 1), flag_comma) /= 0, card, numbers(k), texts(k), &
+        is_card(k))
+    end do
+    associate (block => deck%blocks(i_block))
+      if (.not. block%titled .and. texts(1) > 0 .and. numbers(1) == 0 .and. is_card(2)) then
+        call line_error(deck, cursor%line, 'looks like a heading, which needs _TITLE or _ID ' &
+          //'behind the keyword')
+        block%titled = .true.
+      else if (block%titled .and. is_card(1) .and. .not. is_card(2) .and. (numbers(1) > 0 &
+        .or. index(block%given, '_TITLE') > 0)) then
+        call line_error(deck, cursor%line, 'looks like card 1, but _TITLE and _ID of the keyword ' &
+          //'need a line with a heading before it')
+        block%titled = .false.
+      end if
+    end associate
+  end subroutine check_heading
+
+  !> Count the numbers behind the first field of a line and the texts in fields of numbers. A first
+  !> card has no such texts and begins with a whole number other than 0.
+  pure subroutine count_fields(text, spec, comma, card, n_number, n_text, is_card)
+    character(*), intent(in) :: text
+    type(card_spec_t), intent(in) :: spec
+    logical, intent(in) :: comma
+    type(card_t), intent(inout) :: card
+    integer, intent(out) :: n_number, n_text
+    logical, intent(out) :: is_card
+    integer :: k, rest, whole, status
+    real(wp) :: value
+
+    call cut_text(text, spec, comma, card, rest)
+    n_number = 0
+    n_text = 0
+    whole = 0
+    do k = 1, spec%n
+      if (card%blank(k) .or. spec%kinds(k) == 'a') cycle
+      call read_real(text(card%first(k):card%last(k)), value, status)
+      if (status /= number_good) n_text = n_text + 1
+      if (status == number_good .and. k > 1) n_number = n_number + 1
+    end do
+    if (.not. card%blank(1)) call read_integer(text(card%first(1):card%last(1)), whole, status)
+    is_card = n_text == 0 .and. whole /= 0
+  end subroutine count_fields
 
   !> Read the next line as card `number`, with parameters replaced.
   subroutine read_line(deck, cursor, number, card)

@@ -68,8 +68,8 @@ contains
     model%conditions%nodal_loads = loads(:n)
     is_axis = mark_axis(model)
     call warn_of_nodes(deck, first_radial, 'radial load', model, pack([loads(:n)%node], &
-      is_axis(loads(:n)%node) .and. loads(:n)%direction == 1), ' load(s) in r act on nodes on ' &
-      //'the axis (x = 0), which are fixed in r, and have no effect; the first is on node ', '')
+      is_axis(loads(:n)%node) .and. loads(:n)%direction == 1), 'loads in r without effect, ' &
+      //'on nodes on the axis (x = 0), which are fixed in r', '')
   end subroutine read_nodal_loads
 
   !> Unit vector of the direction of a load in model axes; 0 for a moment.
@@ -103,8 +103,8 @@ contains
       is_bore(pack(conditions%fixed_nodes, conditions%fixed_directions == 1)) = .false.
       nodes = pack([(i, i=1, size(is_bore))], is_bore)
       if (size(nodes) > 0) call warn_of_nodes(deck, deck%maps(a_node)%lines(nodes(1)), 'bore', &
-        model, nodes, ' node(s) lie next to the axis but not on it, and form a bore; the first ' &
-        //'is ', ' at radius '//to_text(radius(nodes(1)))//'; set x = 0, or fix them in r')
+        model, nodes, 'nodes that lie next to the axis but not on it and form a bore', &
+        ' at radius '//to_text(radius(nodes(1)))//'; set x = 0, or fix them in r')
     end associate
   end subroutine warn_of_bores
 

@@ -197,8 +197,8 @@ contains
       end if
     end do
     if (n_turned > 0) call line_warning(deck, deck%maps(an_element)%lines(first_turned), &
-      'clockwise', to_text(n_turned)//' element(s) are numbered clockwise and have been ' &
-      //'reversed; the first is '//to_text(mesh%element_id(first_turned)))
+      'clockwise', 'elements that are numbered clockwise and have been reversed: ' &
+      //to_text(n_turned)//', the first '//to_text(mesh%element_id(first_turned)))
   end subroutine check_shapes
 
   !> Twice the signed area of the triangle at each corner of an element.

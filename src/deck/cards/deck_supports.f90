@@ -67,10 +67,10 @@ contains
     character(*), intent(in) :: key
     type(model_t), intent(in) :: model
     integer, intent(in) :: nodes(:)
-    character(*), intent(in) :: text, advice !! between number and node, and after the node
+    character(*), intent(in) :: text, advice !! before their number, and after the first node
 
-    if (size(nodes) > 0) call line_warning(deck, line, key, to_text(size(nodes))//text &
-      //to_text(model%mesh%node_id(nodes(1)))//advice)
+    if (size(nodes) > 0) call line_warning(deck, line, key, text//': ' &
+      //to_text(size(nodes))//', the first at node '//to_text(model%mesh%node_id(nodes(1)))//advice)
   end subroutine warn_of_nodes
 
   !> (n_node) Whether a node lies on the axis of an axisymmetric model.
@@ -115,7 +115,7 @@ contains
     nodes = pack([(i, i=1, size(is_free))], is_free .and. model%mesh%n_element > 0 &
       .and. deck%report%n_error == 0)
     if (size(nodes) > 0) call warn_of_nodes(deck, deck%maps(a_node)%lines(nodes(1)), 'free', &
-      model, nodes, ' node(s) belong to no element and are fixed; the first is ', '')
+      model, nodes, 'nodes that belong to no element and are fixed', '')
     do while (next_of(deck, 'BOUNDARY_SPC_', cursor, card))
       if (any(card%bad)) cycle
       call card_nodes(deck, card, model, nodes)

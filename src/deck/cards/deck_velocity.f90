@@ -63,8 +63,8 @@ contains
       held = pack([(node, node=1, model%mesh%n_node)], abs(velocity(1, :)) > 0.0_wp &
         .and. (mark_axis(model) .or. mark_rigid_nodes(model%rigids, model%mesh%n_node)))
       velocity(1, held) = 0.0_wp
-      call warn_of_nodes(deck, i, 'radial velocity', model, held, ' node(s) on the axis or of ' &
-        //'rigid bodies have an initial velocity in r, which is ignored; the first is ', '')
+      call warn_of_nodes(deck, i, 'radial velocity', model, held, 'nodes on the axis or of ' &
+        //'rigid bodies whose initial velocity in r is ignored', '')
     end if
     call move_alloc(velocity, model%conditions%initial_velocity)
   end subroutine read_velocities

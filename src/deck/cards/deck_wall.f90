@@ -125,7 +125,7 @@ contains
     is_rigid = is_tracked .and. mark_rigid_nodes(model%rigids, size(is_tracked))
     call warn_of_nodes(deck, line, 'wall and rigid body'//to_text(line), model, pack([(k, k=1, &
       size(is_tracked))], is_rigid), &
-      ' node(s) of rigid bodies pass the wall; the first is ', '')
+      'nodes of rigid bodies, which pass the wall', '')
     is_tracked = is_tracked .and. .not. is_rigid
   end subroutine find_nodes
 
@@ -168,8 +168,8 @@ contains
         i=1, size(wall%nodes))]
     end associate
     call warn_of_nodes(deck, line, 'behind the wall'//to_text(line), model, pack(wall%nodes, &
-      is_behind), ' node(s) start behind the wall; the first is ', &
-      '; they are stopped there, not '//'moved back')
+      is_behind), 'nodes that start behind the wall', &
+      '; they are stopped there, not moved back')
     is_pushed = spread(abs(wall%normal) > 0.0_wp, 2, model%mesh%n_node)
     is_moved = .false.
     do i = 1, size(model%conditions%motions)
@@ -180,8 +180,8 @@ contains
     is_moved(1, :) = any(is_moved .and. is_pushed, 1) .and. all(mark_constrained(model) &
       .or. .not. is_pushed, 1)
     call warn_of_nodes(deck, line, 'wall and motion'//to_text(line), model, pack(wall%nodes, &
-      is_moved(1, wall%nodes)), ' node(s) pass the wall while their motion is prescribed ' &
-      //'(*BOUNDARY_PRESCRIBED_MOTION); the first is ', '')
+      is_moved(1, wall%nodes)), 'nodes that pass the wall while their motion is ' &
+      //'prescribed (*BOUNDARY_PRESCRIBED_MOTION)', '')
   end subroutine check_wall_nodes
 
 end module deck_wall_m

@@ -38,9 +38,9 @@ contains
       //to_text(model%mesh%n_element)//' elements, '//trim(merge( &
       'axisymmetric about x = 0, forces, masses and energies per radian', &
       'plane strain, unit depth                                        ', model%is_axisymmetric)))
-    if (model%is_axisymmetric) call write_log(log, 'axis: ' &
-      //to_text(count(.not. model%mesh%coordinates(1, :) > 0.0_wp)) &
-      //' node(s) at r = 0 are fixed in r; rigid bodies move along the axis only')
+    if (model%is_axisymmetric) call write_log(log, 'axis: nodes at r = 0, ' &
+      //'which are fixed in r: '//to_text(count(.not. model%mesh%coordinates(1, :) > 0.0_wp)) &
+      //'; rigid bodies move along the axis only')
     do i = 1, size(model%parts)
       associate (part => model%parts(i))
         call write_log(log, 'part '//to_text(part%id)//' "'//part%title//'": ' &
@@ -196,7 +196,7 @@ contains
       if (erosion%by_law) text = text//' when all integration points have failed,'
       if (erosion%by_step) text = text//' below the smallest time step or without volume (ERODE),'
       if (erosion%n_given > 0) text = text//' where '//to_text(erosion%n_criteria)//' of ' &
-        //to_text(erosion%n_given)//' criteria hold at '//to_text(erosion%n_point)//' point(s),'
+        //to_text(erosion%n_given)//' criteria hold (points: '//to_text(erosion%n_point)//'),'
       if (erosion%least_step > 0.0_wp) text = text//' below the time step ' &
         //to_text(erosion%least_step)//','
       text = text(:len(text) - 1)
@@ -210,8 +210,8 @@ contains
     integer :: n
 
     n = size(hardening%strain)
-    text = ', yield '//to_text(hardening%stress(1, 1))//', hardening by '//to_text(n) &
-      //' point(s) up to plastic strain '//to_text(hardening%strain(n))//', then modulus ' &
+    text = ', yield '//to_text(hardening%stress(1, 1))//', hardening (points: ' &
+      //to_text(n)//') up to plastic strain '//to_text(hardening%strain(n))//', then modulus ' &
       //to_text(hardening%slope(n, 1))
     if (size(hardening%rate) > 1) text = text//', '//to_text(size(hardening%rate)) &
       //' strain rates from '//to_text(hardening%rate(1))//' to '//to_text(maxval(hardening%rate))

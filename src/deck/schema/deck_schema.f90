@@ -154,7 +154,8 @@ module deck_schema_m
     'CID,ICID,VID,ID is a local coordinate system', &
     'TF lets the constraint fail, which this version does not have; leave it blank', &
     'CIDL gives the points in another system', &
-    'SRC,SRP asks for a Cowper-Symonds strain rate effect', &
+    'SRC,SRP asks for a Cowper-Symonds strain rate effect, which MAT_024 has (C and P); leave it ' &
+    //'0 here', &
     'TDEL,DTF,TEROD,CEROD,CHARL,NUMINT asks for deletion of elements', &
     'IDAM,LCREGD,LCFLD,EPSTHIN,ENGCRT,RADCRT,LCEPS12,LCEPS13,LCEPSMX,MXTMP asks for a criterion ' &
     //'of erosion that this version does not have; leave it 0', &

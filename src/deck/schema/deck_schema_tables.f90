@@ -263,7 +263,7 @@ module deck_schema_tables_m
     ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2>=1<=10 PEN:f FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 PUNIT:i|0|1|2|3|4 PENT:f>=0 VDC:f>=0<=100 IPF:i|0|1' &
     //' FREQ:i>=0<=1000000000 SRCH:f', &
-    ' VC:f>=0 TFAC:f~1>0<=1 TIE:i|0|1|2 NFLS:f SFLS:f LCINT:i>=0 TARGET:f>=0<1' &
+    ' VC:f>=0 TFAC:f=1>0<=1 TIE:i|0|1|2 NFLS:f SFLS:f LCINT:i>=0 TARGET:f>=0<1' &
     //' SMOOTH:i>=-1<=89', &
     'CONTACT_2D_PENALTY t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &

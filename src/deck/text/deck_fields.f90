@@ -14,7 +14,7 @@ module deck_fields_m
   implicit none
   private
   public :: begin_card, card_spec_t, make_spec, field_number, range_text, card_t, cut_card, &
-    read_numbers, field_text, field_error, largest_value, smallest_value
+    cut_text, read_numbers, field_text, field_error, largest_value, smallest_value
 
   !> Specification of a card.
   type :: card_spec_t

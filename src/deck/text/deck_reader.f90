@@ -83,8 +83,8 @@ contains
     end do
     if (in_block) call close_block(deck, source, folders)
     folders = folders(:n_above)
-    if (n_stray_lines > 0) call line_error(deck, 0, 'in '//deck%sources(source)%path//', ' &
-      //to_text(n_stray_lines)//' line(s) before the first keyword (a line that starts with *)')
+    if (n_stray_lines > 0) call line_error(deck, 0, 'in '//deck%sources(source)%path//': ' &
+      //'lines before the first keyword (a line that starts with *): '//to_text(n_stray_lines))
   end subroutine cut_source
 
   !> Report the last line if it is too long.

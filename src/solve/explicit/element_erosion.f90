@@ -45,9 +45,9 @@ contains
 
     is_first = sum(state%elements%erosion%n_eroded) == 0
     call update_erosion(model, state%time, state%elements%erosion, freed)
-    if (is_first .and. allocated(freed)) call write_log(log, 'first erosion: '// &
-      to_text(sum(state%elements%erosion%n_eroded))//' element(s) at cycle ' &
-      //to_text(state%cycle)//', time '//to_text(state%time))
+    if (is_first .and. allocated(freed)) call write_log(log, 'first erosion at cycle ' &
+      //to_text(state%cycle)//', time '//to_text(state%time)//', elements: ' &
+      //to_text(sum(state%elements%erosion%n_eroded)))
   end subroutine finish_erosion
 
   !> Stop nodes without an element after the motion of the cycle. Their kinetic energy v(n-1/2).m

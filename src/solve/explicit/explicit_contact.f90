@@ -136,8 +136,9 @@ contains
     text = 'contact forces limited to the admissible energy in ' &
       //to_text(limit%n_limited)//' of '//to_text(limit%n_loaded) &
       //' cycles with force, the smallest factor '//to_text(limit%least_factor)//' at time ' &
-      //to_text(limit%least_time)//'; at most '//to_text(limit%withheld)//', ' &
-      //percent(limit%withheld, largest)//' of the largest energy so far, was withheld'
+      //to_text(limit%least_time)//'; energy withheld at most '//to_text(limit%withheld)//', ' &
+      //percent(limit%withheld, largest)//' of the largest energy so far'
+    if (limit%withheld <= noticed_share*largest) text = text//' (negligible)'
   end function limit_text
 
   !> Report at the end of a run the interfaces whose forces were limited and those whose springs

@@ -400,9 +400,9 @@ contains
       if (.not. share > 1.0_wp) return
       text = '*DAMPING_GLOBAL acts on all parts with D = ' &
         //to_text(largest*maxval(damping%factor))//' ('//text &
-        //', times STX or STY); times the step '//to_text(dt)//' that is ' &
-        //to_text(share)//', above 1: a step leaves '//to_text((2.0_wp - share)/(2.0_wp + share)) &
-        //' of a velocity where exp(-D dt) = '//to_text(exp(-share))//' is meant'
+        //', times STX or STY); D dt = '//to_text(share)//' is above 1 (dt '//to_text(dt) &
+        //'): a step multiplies velocities by '//to_text((2.0_wp - share)/(2.0_wp + share)) &
+        //', the exact factor exp(-D dt) is '//to_text(exp(-share))
     end associate
     if (share > 2.0_wp) text = text//', and above 2 velocities change sign in every step'
     call warn(log, text//'; the run is stable, but inaccurate: reduce D or the time step')

@@ -202,8 +202,8 @@ contains
           call break_at_end(model%contacts(k), time, attempt%contacts(k), n_new)
           if (n_new == 0) cycle
           broke = .true.
-          call write_log(monitor%log, 'step to '//to_text(time)//': '//to_text(n_new) &
-            //' tie(s) of interface '//to_text(model%contacts(k)%id)//' failed')
+          call write_log(monitor%log, 'step to '//to_text(time)//': failed ties of ' &
+            //'interface '//to_text(model%contacts(k)%id)//': '//to_text(n_new))
           state%contacts(k)%ties = attempt%contacts(k)%ties
         end do
         if (.not. broke) return
