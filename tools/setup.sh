@@ -28,7 +28,7 @@ lock() {
   fi
 }
 
-# holder: who holds the lock, as far as it is told.
+# holder: who holds the lock, as far as it is reported.
 holder() {
   cat "$root/build/lock.holder" 2>/dev/null || echo "it does not say which"
 }

@@ -3,7 +3,7 @@
 
 A copy of the tree stands in for a fresh clone: its build/ holds the program under test and the Python
 of the tests, so that nothing is compiled or installed. Blocks with a title are the files that the
-reader is told to save; lines of `sh` blocks run one after the other, and must end with status 0, or
+reader is reported to save; lines of `sh` blocks run one after the other, and must end with status 0, or
 with the one that their comment gives ("ends with status 1"). A `text` block without a title is what
 the block above it prints, on a page without commands a figure. `python` blocks without a title run
 after the commands of their page, as one script. Other kinds of blocks there are not, and an indented

@@ -28,7 +28,7 @@ def kept(cell):
     return "".join(text if text.endswith("\n") else f"{text}\n" for text in texts)
 
 
-def told(source, names):
+def reported(source, names):
     """What a cell prints and gives now."""
     *body, last = ast.parse(source).body
     out = io.StringIO()
@@ -68,7 +68,7 @@ def test_cells_run(cells, exe, tmp_path, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "Agg")
     names = {}
     for cell in cells:
-        now = told("".join(cell["source"]), names)
+        now = reported("".join(cell["source"]), names)
         if "<Axes" not in now and "<Figure" not in now:
             assert same(now, kept(cell)), f"{now}\nis not what is kept:\n{kept(cell)}"
     assert names["outcome"].parameters["ctype"] == 5 and names["results"].n_state == 11

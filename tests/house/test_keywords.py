@@ -31,13 +31,13 @@ def test_page_has_the_fields_of_the_reader():
 @pytest.mark.parametrize("keyword", KEYWORDS, ids=lambda keyword: keyword.name)
 def test_honoured_fields_have_a_meaning_and_say_nothing_twice(keyword):
     """Of a row of fields alike, as EPS1 to EPS8, the first has it. Ranges and defaults are the reader's."""
-    told = set()
+    reported = set()
     for _, name, _, _, default, limits, treatment, meaning in keyword.fields:
         stem = re.sub(r"\d", "", name)
         if meaning:
-            told.add(stem)
+            reported.add(stem)
         if treatment == "honoured":
-            assert stem in told, name
+            assert stem in reported, name
             assert not (limits and SAID.search(meaning)), (name, limits, meaning)
             assert not (default and DEFAULT.search(meaning)), (name, default, meaning)
 

@@ -59,7 +59,7 @@ def test_every_layer_has_a_command(commands):
 
 
 def folders_searched(words):
-    """Where a command lets the compiler look for modules of layers: what it is told by -I."""
+    """Where a command lets the compiler look for modules of layers: its -I options."""
     return {pathlib.Path(word[2:]) for word in words if word.startswith("-I") and "/modules/" in word}
 
 

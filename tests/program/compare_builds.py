@@ -62,7 +62,7 @@ def difference(mine, other):
         if mine[name].shape != other[name].shape:
             found[group_of(name)] = np.inf  # other steps
         elif mine[name].tobytes() != other[name].tobytes():
-            # Different bits are told from the same ones: the two zeros have no difference.
+            # Different bits are distinguished from the same ones: the two zeros have no difference.
             value = max(np.abs(mine[name] - other[name]).max() / size_of(name, other), np.finfo(float).tiny)
             found[group_of(name)] = max(found[group_of(name)], value)
     return found

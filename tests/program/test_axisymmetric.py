@@ -71,7 +71,7 @@ def two_rings():
     return deck.output(plot=0.05, glstat=0.01, matsum=0.01)
 
 
-def test_what_is_settled_is_told(exe, tmp_path):
+def test_what_is_settled_is_reported(exe, tmp_path):
     (tmp_path / "job.k").write_text(two_rings().text())
     done = run(exe, tmp_path, "i=job.k", "d=out")
     log = (tmp_path / "out/job.log").read_text()
@@ -121,7 +121,7 @@ def hollow(way, points, implicit=False):
 
 
 @pytest.mark.parametrize("scene", [{"way": -8.0, "points": 1}, {"way": -0.011, "points": 4, "implicit": True}])
-def test_nodes_beyond_the_axis_are_told_once(exe, tmp_path, scene):
+def test_nodes_beyond_the_axis_are_reported_once(exe, tmp_path, scene):
     (tmp_path / "job.k").write_text(hollow(**scene))
     done = run(exe, tmp_path, "i=job.k", "d=out")
     assert done.stderr.count("has crossed the axis") == 1
@@ -129,7 +129,7 @@ def test_nodes_beyond_the_axis_are_told_once(exe, tmp_path, scene):
     assert "crossed the axis" not in run(exe, tmp_path, "i=job.k", "d=out").stderr
 
 
-def test_radial_loads_on_the_axis_are_told(exe, tmp_path):
+def test_radial_loads_on_the_axis_are_reported(exe, tmp_path):
     def disc(form):
         deck = Deck("loads on the axis").control(1.0e-3)
         deck.add("*PART", "disc", (1, 1, 1)).add("*SECTION_SHELL", (1, form), (1.0,)).elastic(1000.0, 1.0e6, 0.3)
@@ -137,10 +137,10 @@ def test_radial_loads_on_the_axis_are_told(exe, tmp_path):
         deck.add("*LOAD_NODE_SET", (1, 1, 1, 5.0), (1, 2, 1, 5.0)).add("*LOAD_NODE_POINT", (1, 1, 1), (2, 1, 1))
         return deck.text()
 
-    for form, told in ((15, True), (13, False)):
+    for form, reported in ((15, True), (13, False)):
         (tmp_path / "job.k").write_text(disc(form))
         said = run(exe, tmp_path, "check", "job.k").stderr
-        assert ("*LOAD_NODE_SET: loads in r without effect, on nodes on the axis (x = 0), which are fixed in r: 5, " in said) == told, said
+        assert ("*LOAD_NODE_SET: loads in r without effect, on nodes on the axis (x = 0), which are fixed in r: 5, " in said) == reported, said
 
 
 def test_units_of_contact_are_per_radian(exe, tmp_path):
@@ -155,13 +155,13 @@ def test_units_of_contact_are_per_radian(exe, tmp_path):
         deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, 5, 2, 1.0, 0.3), (0.0, 1.0e20, 2))
         return deck.add("*INITIAL_VELOCITY", (3,), (1.0, 0.0)).output(glstat=1.0e-3).text()
 
-    told = "*CONTROL_UNITS\n        mm       sec  mtrc_ton\n"
+    reported = "*CONTROL_UNITS\n        mm       sec  mtrc_ton\n"
     named = re.compile(r"\d (?:k?[NJ]|m?m|m?s)(?:[/ ]|$)", re.M)
     for form, units, right in (
             (15, "", (r"dissipated \S+ per radian\n", r"contact force there \S+ per radian; the run", "times the radius, per radian")),
-            (15, told, (r"dissipated \S+ N mm per radian\n", r"node \d+: \S+ mm, contact force there \S+ N per radian; the run")),
+            (15, reported, (r"dissipated \S+ N mm per radian\n", r"node \d+: \S+ mm, contact force there \S+ N per radian; the run")),
             (13, "", (r"dissipated \S+\n", r"node \d+: \S+, contact force there \S+; the run")),
-            (13, told, (r"dissipated \S+ N mm/mm\n", r"contact force there \S+ N/mm; the run", r"mean length \S+ mm\n",
+            (13, reported, (r"dissipated \S+ N mm/mm\n", r"contact force there \S+ N/mm; the run", r"mean length \S+ mm\n",
                         r" N/mm per slave node = \S+ N/mm\^2; "))):
         (tmp_path / "job.k").write_text(rubbing(form).replace("*END", units + "*END"))
         run(exe, tmp_path, "i=job.k", "d=out")
@@ -198,8 +198,8 @@ def test_flow_does_not_depend_on_units(exe, tmp_path):
     assert np.abs(found[1] - found[0]).max() < 1e-11 * np.abs(found[0]).max()
 
 
-def test_nodes_next_to_the_axis_are_told(exe, tmp_path):
-    for shift, held, told in ((1.0e-9, False, True), (1.0e-9, True, False), (1.0e-3, False, False), (1.0e-12, False, False)):
+def test_nodes_next_to_the_axis_are_reported(exe, tmp_path):
+    for shift, held, reported in ((1.0e-9, False, True), (1.0e-9, True, False), (1.0e-3, False, False), (1.0e-12, False, False)):
         deck = Deck("disc beside its axis").control(1.0e-3)
         deck.add("*PART", "disc", (1, 1, 1)).add("*SECTION_SHELL", (1, 15), (1.0,)).elastic(1000.0, 1.0e6, 0.3)
         ids = deck.mesh(*grid(3, 3, origin=(shift, 0.0)))
@@ -207,12 +207,12 @@ def test_nodes_next_to_the_axis_are_told(exe, tmp_path):
             deck.fix(ids[::4], x=1)
         (tmp_path / "job.k").write_text(deck.text())
         said = run(exe, tmp_path, "check", "job.k").stderr
-        assert ("nodes that lie next to the axis but not on it and form a bore: 4, " in said) == told, said
+        assert ("nodes that lie next to the axis but not on it and form a bore: 4, " in said) == reported, said
         # What is next to the axis does not hang on how long the bodies are.
         deck.mesh(*grid(1, 1, origin=(1.0, 1.0e5)))
         (tmp_path / "job.k").write_text(deck.text())
         said = run(exe, tmp_path, "check", "job.k").stderr
-        assert ("nodes that lie next to the axis but not on it and form a bore: 4, " in said) == told, said
+        assert ("nodes that lie next to the axis but not on it and form a bore: 4, " in said) == reported, said
 
 
 def cone_on_disc(kind, sides):

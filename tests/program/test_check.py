@@ -92,7 +92,7 @@ def test_the_model_has_what_the_deck_says(slideline, tmp_path):
 
 def test_files_of_a_check(slideline, tmp_path):
     """A deck that can be read but can not start has its model, undeformed; a refused one has none; a file that can not be
-    made is told."""
+    made is reported."""
     (tmp_path / "wrong.k").write_text(WRONG)
     assert slideline("check", "wrong.k", "d=new").returncode == 1 and not (tmp_path / "new").exists()
     apart = (ROOT / "doc/examples/contact_2d_tied.k").read_text()
@@ -146,8 +146,8 @@ def test_what_a_run_warns_of_at_its_start(slideline, tmp_path):
     assert done.returncode == 0
     accepted, found = findings(done)
     assert accepted and any("time step" in entry["message"] for entry in found)
-    told = [line for line in slideline("i=stiff.k", "endtim=1e-4").stderr.splitlines() if "penalty" in line]
-    assert told and told[0] == "warning: " + next(
+    reported = [line for line in slideline("i=stiff.k", "endtim=1e-4").stderr.splitlines() if "penalty" in line]
+    assert reported and reported[0] == "warning: " + next(
         entry["message"] for entry in found if "penalty" in entry["message"])
 
 

@@ -126,14 +126,14 @@ def test_target(slideline, chosen, tmp_path, target, wanted, words, scene):
     cards = effective.split("*CONTACT_2D_SLIDELINE\n")[1].split("\n")
     assert cards[0].split(",")[2] == str(wanted) and float(cards[2].split(",")[6]) == target
     same_bits(slideline, tmp_path, press(ctype=wanted, pen=1.0e6, **scene))
-    told = {re.search(r"interface 1: the target .*", (tmp_path / folder / "job.log").read_text())[0]
+    reported = {re.search(r"interface 1: the target .*", (tmp_path / folder / "job.log").read_text())[0]
             for folder in ("out",) + ("again",) * (not IS_SHORT)}
-    assert len(told) == 1
+    assert len(reported) == 1
 
 
 @pytest.mark.parametrize("target, ctype, found", [(0.9, 1, "is reached"), (0.03, 1, "type 4 would reach it"),
                                                   (1.0e-4, 5, "elements smaller by a factor of")])
-def test_target_is_told_at_the_end(slideline, tmp_path, target, ctype, found):
+def test_target_is_reported_at_the_end(slideline, tmp_path, target, ctype, found):
     """Against the estimates of sleout; the factor is that of the order 0.89 of the published study."""
     deck = press(ctype=ctype, pen=1.0e6, columns=(3, 4)).text().replace("\n,,\n", f"\n,,,,,,{target}\n")
     assert f",,{target}" in deck
@@ -185,9 +185,9 @@ def test_restart_keeps_the_choice(slideline, chosen, tmp_path):
     for name in BITS:
         whole, rest = ((tmp_path / folder / f"job.{name}").read_text().splitlines() for folder in ("out", "on"))
         assert rest[-1] == whole[-1] and len(rest) > 1, name
-    told = [re.findall(r"interface 1: contact pressure and .*", (tmp_path / folder / "job.log").read_text())
+    reported = [re.findall(r"interface 1: contact pressure and .*", (tmp_path / folder / "job.log").read_text())
             for folder in ("out", "on")]
-    assert told[0] == told[1] and len(told[0]) == 1
+    assert reported[0] == reported[1] and len(reported[0]) == 1
 
 
 def test_estimates_have_the_same_bits_with_threads(slideline, tmp_path):
@@ -202,7 +202,7 @@ def test_estimates_have_the_same_bits_with_threads(slideline, tmp_path):
 
 @pytest.mark.parametrize("target, found", [(0.02, r"waves prevent it, the static part is 0\.\d\d %$"),
                                            (1.0e-5, r"the static part is 0\.\d\d %; .* elements smaller")])
-def test_waves_are_told_apart(slideline, tmp_path, target, found):
+def test_waves_are_reported_apart(slideline, tmp_path, target, found):
     """Bars that collide are in equilibrium but for their waves: a target that is missed by these alone gets no finer mesh."""
     deck = Deck("bars")
     deck.control(2.0e-3).add("*SECTION_SHELL", (1, 13), (1.0,))
@@ -216,8 +216,8 @@ def test_waves_are_told_apart(slideline, tmp_path, target, found):
     assert slideline("d=out", deck=deck).returncode == 0
     log = (tmp_path / "out/job.log").read_text()
     assert re.search(found, re.search(r"interface 1: the target .*", log)[0]), log
-    told, at_rest = re.search(r"differ by ([\d.]+) %.* at the largest load, without waves by ([\d.]+) %", log).groups()
-    assert float(told) > 5.0 and float(at_rest) < 0.01 * float(told)
+    reported, at_rest = re.search(r"differ by ([\d.]+) %.* at the largest load, without waves by ([\d.]+) %", log).groups()
+    assert float(reported) > 5.0 and float(at_rest) < 0.01 * float(reported)
 
 
 def test_statics_have_no_waves(slideline, tmp_path):

@@ -55,7 +55,7 @@ def test_a_second_word_without_a_name_is_a_second_deck(slideline):
     assert done.returncode == 1 and 'job.k" and "case"\n' in done.stderr, done.stderr
 
 
-def test_values_of_overrides_are_told_with_other_mistakes(slideline):
+def test_values_of_overrides_are_reported_with_other_mistakes(slideline):
     done = slideline("ctype=abc", "pen=1e5", "p:X=abc", "dt.x=1", "endtim=x", "foo=2", deck=drop())
     assert done.returncode == 1
     assert done.stderr.splitlines() == ['unknown argument "dt.x=1"; did you mean dt=?', 'unknown argument "foo=2"',
@@ -89,7 +89,7 @@ def test_memory_is_accepted_and_ignored(slideline, tmp_path):
 
 
 def test_words_of_ls_dyna(slideline, tmp_path):
-    """Those without effect are told once, in one warning; the results are those of a run without them."""
+    """Those without effect are reported once, in one warning; the results are those of a run without them."""
     deck = drop(end_time=0.002).text().replace("*END", "*DATABASE_BINARY_D3DUMP\n10,\n*END")
     words = ["o=d3hsp", "g=d3plot", "s=intfor", "f=d3thdt", "a=runrsf", "x=7", "x=8", "para=1"]
     done = slideline("d=dyna", "d=nodump", "c=3600", "memory2=20m", "ncpu=-2", *words, deck=deck)
@@ -138,14 +138,14 @@ def test_wrong_words_are_refused(slideline, word, said):
 
 
 @pytest.mark.parametrize("name", ["ctype", "ngauss", "pen", "punit", "pent", "vdc"])
-def test_overrides_that_find_no_interface_are_told(slideline, name):
+def test_overrides_that_find_no_interface_are_reported(slideline, name):
     """A deck without contact: a sweep over types would otherwise give seven equal runs without a word. One for an
     interface by number is refused."""
     deck = re.sub(r"\*CONTACT_2D[^*]*", "", drop(end_time=0.002).text())
     done = slideline("d=w", f"{name}=1", deck=deck)
     assert done.returncode == 0
-    told = f"changes {name.upper()} of all interfaces, but the deck has none"
-    assert told in done.stdout + done.stderr
+    reported = f"changes {name.upper()} of all interfaces, but the deck has none"
+    assert reported in done.stdout + done.stderr
     done = slideline("d=n", "endtim=0.001", "tssfac=0.5", "dt=1.0e-4", deck=deck)
     assert done.returncode == 0 and "of all interfaces" not in done.stdout + done.stderr
     done = slideline("d=o", f"{name}.1=1", deck=deck)

@@ -86,7 +86,7 @@ def hard_on_soft(factor=1.0, modulus=1.0e10, layers=False, n=6, wide=1, ecdt=0, 
     return deck.output(plot=0.01, glstat=rows, matsum=rows, rcforc=1.0e-3).add("*DATABASE_SLEOUT", (1.0e-3,))
 
 
-def told(log, words):
+def reported(log, words):
     return [line for line in log.splitlines() if words in line]
 
 
@@ -99,7 +99,7 @@ def fall(slideline, tmp_path):
         parts = columns(tmp_path / name / "job.matsum.csv")
         speed = np.array([float(p) for p, k in zip(parts["momentum_y"], parts["part"]) if k == "1"]) / 250.0
         log = (tmp_path / name / "job.log").read_text()
-        return log, told(log, "its springs stored up to"), speed[-1]
+        return log, reported(log, "its springs stored up to"), speed[-1]
     return run
 
 
@@ -117,7 +117,7 @@ def test_a_factor_without_its_punit_is_named(slideline, penalty, unit, warns):
     assert (f"with PUNIT {unit} (0 where blank) is" in done.stderr) == warns, done.stderr
 
 
-def test_springs_that_store_much_of_a_blow_on_a_soft_body_are_told(slideline, tmp_path, fall):
+def test_springs_that_store_much_of_a_blow_on_a_soft_body_are_reported(slideline, tmp_path, fall):
     log, lines, _ = fall("stock")
     # Ten elements of the soft side by either pass, beside one of the soft and one of the hard row, which is 1e4 times as stiff.
     found = re.search(r"compliance of its springs is (\S+) times that of the elements", log)
@@ -132,7 +132,7 @@ def test_springs_that_store_much_of_a_blow_on_a_soft_body_are_told(slideline, tm
     assert fall("layers", layers=True)[1] == lines
     rest = part_of(tmp_path / "stock", tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
     assert slideline("r=rest/job.dump01.h5").returncode == 0
-    assert told((rest / "job.log").read_text(), "its springs stored up to") == lines
+    assert reported((rest / "job.log").read_text(), "its springs stored up to") == lines
     # Plot states alone show it too.
     line, = fall("plots", rows=1.0)[1]
     assert float(re.search(r" sides, (\S+): the springs", line)[1]) == pytest.approx(bodies, rel=0.05)
@@ -184,7 +184,7 @@ FACETS = re.compile(r"warning: interface 1: flat facets govern the contact press
 
 @pytest.mark.parametrize("static", (False, True))
 @pytest.mark.parametrize("kind", some_types(2, release=7))
-def test_facets_of_a_press_fit_are_told(slideline, tmp_path, kind, static):
+def test_facets_of_a_press_fit_are_reported(slideline, tmp_path, kind, static):
     """48 facets of the shaft stand off by R (pi/48)^2/2, twice the interference; a tenth of it needs some 220."""
     done = slideline(deck=press_fit(kind, static=static))
     assert done.returncode == 0, done.stderr

@@ -41,10 +41,10 @@ def test_cards_without_effect_are_named(slideline, tmp_path, cards, words):
     ("ELOUT", "HISTORY_SHELL", "1"), ("NODFOR", "NODAL_FORCE_GROUP", "2"),
     ("SECFORC", "CROSS_SECTION_SET", "5,,,5\n*SET_SHELL_LIST\n5\n1,2,3\n*SET_NODE_LIST\n5\n2,3")])
 def test_a_history_of_nothing_is_named(slideline, tmp_path, name, needed, card):
-    """A history without the keyword that says of what was nowhere told, and there was no file."""
-    told = f"*DATABASE_{name}: asks for a history, but the deck has no *DATABASE_{needed}: no file is written"
+    """A history without the keyword that says of what was nowhere reported, and there was no file."""
+    reported = f"*DATABASE_{name}: asks for a history, but the deck has no *DATABASE_{needed}: no file is written"
     cards = [f"*DATABASE_{name}\n1.0e-4"]
-    assert told in said_by(slideline, tmp_path, *cards)[1]
+    assert reported in said_by(slideline, tmp_path, *cards)[1]
     assert not (tmp_path / "out" / f"job.{name.lower()}.csv").exists()
     status, said = said_by(slideline, tmp_path, *cards, f"*DATABASE_{needed}\n{card}")
     assert status == 0 and "asks for a history" not in said, said
@@ -63,7 +63,7 @@ def test_histories_that_the_model_has_nothing_for_are_named(slideline, tmp_path)
     ("*MAT_CRUSHABLE_FOAM\n2,1000.0,1.0e6,0.0,9,1.0e4\n*DEFINE_CURVE\n9,\n0.0,1.0e5\n0.9,1.0e6", True),
     ("*MAT_ELASTIC\n2,1000.0,1.0e6,0.3", False), ("*MAT_RIGID\n2,1000.0,1.0e6,0.3", False)])
 def test_what_erode_passes_over_is_named(slideline, tmp_path, law, stays):
-    """Rubber and foam stay in the mesh: the deck is told so, whatever else may leave."""
+    """Rubber and foam stay in the mesh: the deck is reported so, whatever else may leave."""
     deck = Deck("two squares").add("*CONTROL_TERMINATION", (1.0e-4,)).add("*CONTROL_TIMESTEP", (0.0, 0.9, 0, 0.0, 0.0, 0, 1))
     deck.add("*SECTION_SHELL", (1, 13), (1.0,)).elastic(1000.0, 1.0e6, 0.3)
     for part in (1, 2):
@@ -118,7 +118,7 @@ def node_lines(text):
     return start, stop
 
 
-def test_more_mistakes_than_are_told(slideline, tmp_path):
+def test_more_mistakes_than_are_reported(slideline, tmp_path):
     """1100 sets that are not there: the first in words, all of them in its count and in the sum."""
     text = drop().text().rsplit("*END", 1)[0]
     text += "".join(f"*BOUNDARY_SPC_SET\n{1000 + k},0,1,1\n" for k in range(1100)) + "*END\n"

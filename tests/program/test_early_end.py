@@ -17,13 +17,13 @@ def with_end(deck, keyword, *cards, dump=None):
     return deck.text()
 
 
-def check_end(slideline, tmp_path, deck, told, name="out"):
+def check_end(slideline, tmp_path, deck, reported, name="out"):
     """Normal termination that tells why, on the screen, in the log and in status.out; the last time."""
     done = slideline(f"d={name}", deck=deck)
     assert done.returncode == 0, done.stderr
-    assert "N o r m a l    t e r m i n a t i o n" in done.stdout and re.search(told, done.stdout)
+    assert "N o r m a l    t e r m i n a t i o n" in done.stdout and re.search(reported, done.stdout)
     for file in ("job.log", "status.out"):
-        assert re.search(told, (tmp_path / name / file).read_text()), file
+        assert re.search(reported, (tmp_path / name / file).read_text()), file
     return numbers(tmp_path / name / "job.glstat.csv", "time")[-1]
 
 
@@ -43,10 +43,10 @@ def test_node_in_contact(slideline, tmp_path):
 
 
 def test_body_moves(slideline, tmp_path):
-    for cards, told, component, bound in (((2, 2, 0.0, -0.004), r"body 2 has gone to displacement y = -", "uy", 0.004),
+    for cards, reported, component, bound in (((2, 2, 0.0, -0.004), r"body 2 has gone to displacement y = -", "uy", 0.004),
                                           ((2, 4, 0.006), r"body 2 has gone \d", None, 0.006)):
         name = f"body{cards[1]}"
-        check_end(slideline, tmp_path, with_end(busy_block(interval=1.0e-4), "BODY", cards), told, name)
+        check_end(slideline, tmp_path, with_end(busy_block(interval=1.0e-4), "BODY", cards), reported, name)
         table = {c: numbers(tmp_path / name / "job.rbdout.csv", c) for c in ("part", "ux", "uy")}
         own = table["part"] == 2
         gone = np.abs(table["uy"][own]) if component else np.hypot(table["ux"][own], table["uy"][own])

@@ -52,7 +52,7 @@ def test_refused_deck_says_how_it_ended(slideline, tmp_path):
     assert not (tmp_path / "r").exists()
 
 
-def check_told_end(folder, done, status, reason):
+def check_reported_end(folder, done, status, reason):
     """An error after the log was opened: the reason on the screen and in the log, the ending, the timing table."""
     assert done.returncode == status, done.stderr
     assert reason in done.stderr
@@ -63,9 +63,9 @@ def check_told_end(folder, done, status, reason):
     assert "total" in (folder / "job.timing.csv").read_text()
 
 
-def test_no_room_for_an_automatic_penalty_is_told(slideline, tmp_path):
+def test_no_room_for_an_automatic_penalty_is_reported(slideline, tmp_path):
     done = slideline("d=a", "punit=3", "pen=0.5", "tssfac=1.0", "dt=1.0", deck=drop())
-    check_told_end(tmp_path / "a", done, 1, "no automatic penalty (PUNIT 3) is stable")
+    check_reported_end(tmp_path / "a", done, 1, "no automatic penalty (PUNIT 3) is stable")
     assert not list((tmp_path / "a").glob("*.vtkhdf*"))
 
 
@@ -77,7 +77,7 @@ def test_a_run_that_could_not_begin_leaves_nothing_of_the_run_before(slideline, 
 
 
 @pytest.mark.parametrize("name", ["job.effective.k", "job.vtkhdf.part", "job.glstat.csv", "job.dump01.h5"])
-def test_files_that_cannot_be_made_are_told(slideline, tmp_path, name):
+def test_files_that_cannot_be_made_are_reported(slideline, tmp_path, name):
     """Names that are taken are looked at first: nothing is written, not even a log."""
     (tmp_path / "a" / name).mkdir(parents=True)
     done = slideline("d=a", deck=drop())
@@ -214,7 +214,7 @@ def driven_through(deck, start, drop):
     return deck
 
 
-def test_released_first_contacts_are_told_at_an_error(slideline, tmp_path):
+def test_released_first_contacts_are_reported_at_an_error(slideline, tmp_path):
     """The run ends by an element that turns over in a cycle that writes nothing. Its hourglass form takes no root of the area."""
     deck = pushed_in(0.12).add("*CONTROL_HOURGLASS", (4, 0.05))
     place = deck.lines.index("*CONTACT_2D_SLIDELINE") + 2

@@ -66,7 +66,7 @@ def test_listed_steps_of_a_fluid_are_those_of_the_run(slideline, tmp_path, form)
     assert steps[1.0e5] < 0.7 * steps[0.0]
 
 
-def test_pressure_without_bound_is_told(slideline, tmp_path):
+def test_pressure_without_bound_is_reported(slideline, tmp_path):
     log, said = log_of(slideline, tmp_path, block(("*MAT_NULL", (1, 8930.0)), GRUNEISEN, pull=-0.069), 2)
     for text in (log, said):
         assert re.search(r"V/V0 3\.\d+E-01, near which the pressure of equation of state 5 has no bound .* in element \d of "
@@ -97,20 +97,20 @@ def test_shear_modulus_beside_young(slideline, tmp_path, shear, warned):
     assert ("is not E/(2 (1 + PR)) = 4.62" in log) == warned
 
 
-def test_failing_points_are_told(slideline, tmp_path):
+def test_failing_points_are_reported(slideline, tmp_path):
     """While it happens and at the end; a run that goes on does not tell the first one again."""
     deck = block(("*MAT_PLASTIC_KINEMATIC", (1, 7850.0, 2.1e11, 0.3, 3.0e8, 1.0e9), (0.0, 0.0, 0.01)), eos=0, pull=4.0e-3, n=4,
                  end=4.0e-4)
     log, _ = log_of(slideline, tmp_path, deck)
     first = re.search(r"first failed point (in element \d+ of part 1 at cycle \d+, time \S+)\n", log)[1]
     assert 1 <= len(re.findall(r"first failed point |failed points: \d+ of \d+ by cycle", log)) <= 3
-    told = re.search(r"failed points: (\d+) of 16, the first (.*)\n", log)
-    assert int(told[1]) == 16 and told[2] == first
+    reported = re.search(r"failed points: (\d+) of 16, the first (.*)\n", log)
+    assert int(reported[1]) == 16 and reported[2] == first
     at = float(first.split()[-1])
     assert 1.0e-4 < at < 4.0e-4
 
 
-def test_no_failure_is_told_too(slideline, tmp_path):
+def test_no_failure_is_reported_too(slideline, tmp_path):
     log, _ = log_of(slideline, tmp_path, block(("*MAT_PLASTIC_KINEMATIC", (1, 7850.0, 2.1e11, 0.3, 3.0e8), (0.0, 0.0, 0.5)),
                                                eos=0, end=1.0e-6))
     assert "failed points: none" in log

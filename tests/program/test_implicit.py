@@ -156,23 +156,23 @@ def overlapping(dynamic, kind=2):
 
 
 @pytest.mark.parametrize("dynamic", [False, True])
-def test_contact_at_the_start_is_told_once(slideline, tmp_path, dynamic):
+def test_contact_at_the_start_is_reported_once(slideline, tmp_path, dynamic):
     """Initial penetration: by the run and by its check, not by a restart."""
     deck = overlapping(dynamic)
     done = slideline("d=x", deck=deck)
     assert done.returncode == 0, done.stderr
     # Steps this long take the work of the springs by a rule that is not exact: the dynamic run ends with warnings of that.
-    told = [line.removeprefix("warning: ") for line in done.stderr.splitlines()
+    reported = [line.removeprefix("warning: ") for line in done.stderr.splitlines()
             if not (dynamic and re.search("created energy|energy ratio", line))]
-    assert len(told) == 1, told
+    assert len(reported) == 1, reported
     # Competence length 1/3 of a slave node inside; 1/6 at the first one, whose depth is the same.
     assert re.search(r"interface 1: initial penetration at 3 points, deepest at node 16: 4\.0+E-03, contact force "
-                     r"there 2\.0+E\+03; the run starts with", told[0]), told
+                     r"there 2\.0+E\+03; the run starts with", reported[0]), reported
     log = (tmp_path / "x" / "job.log").read_text()
-    assert log.count(told[0]) == 1
+    assert log.count(reported[0]) == 1
     done = slideline("check", "job.k", "--json")
     assert done.returncode == 0, done.stderr
-    assert [entry["message"] for entry in json.loads(done.stdout)["findings"]] == told
+    assert [entry["message"] for entry in json.loads(done.stdout)["findings"]] == reported
     done = slideline("r=x/job.dump01.h5")
     assert done.returncode == 0 and "initial penetration" not in done.stderr, done.stderr
 
@@ -249,9 +249,9 @@ def test_stick_and_slip_that_cycle_end_the_attempt(slideline, tmp_path, automati
     """Before the last of 40 iterations; a step that may be cut is, and the run goes on."""
     done = slideline("d=x", deck=tilted_on_another(automatic))
     assert done.returncode == (0 if automatic else 2), done.stderr
-    told = re.findall(r"no equilibrium after (\d+) iterations, which cycle between the same states of stick and slip",
+    reported = re.findall(r"no equilibrium after (\d+) iterations, which cycle between the same states of stick and slip",
                       (tmp_path / "x" / "job.log").read_text())
-    assert told and max(map(int, told)) < 40
+    assert reported and max(map(int, reported)) < 40
     if automatic:
         assert last_state(tmp_path / "x") == (1.0, 1.0)
         steps = numbers(tmp_path / "x" / "job.glstat.csv", "time")
@@ -489,17 +489,17 @@ def arch(drive, dynamic=False):
     return deck.output(glstat=0.01)
 
 
-def test_a_jump_past_a_limit_point_is_told(slideline, tmp_path):
+def test_a_jump_past_a_limit_point_is_reported(slideline, tmp_path):
     """The load jumps the arch through: the step is named, and what would do; the works of the run do not add up."""
     done = slideline("d=x", deck=arch("load"))
     assert done.returncode == 0, done.stderr
-    told = re.findall(r"warning: step (\d+) to time (\S+) has passed a limit point", done.stderr)
-    assert len(told) == 1, done.stderr
+    reported = re.findall(r"warning: step (\d+) to time (\S+) has passed a limit point", done.stderr)
+    assert len(reported) == 1, done.stderr
     assert "prescribe a displacement" in done.stderr and "IMASS 1" in done.stderr
     table = tmp_path / "x" / "job.glstat.csv"
     times, ratio = numbers(table, "time"), numbers(table, "energy_ratio")
-    after = times >= float(told[0][1]) - 1.0e-6
-    assert 0 < int(told[0][0]) and np.all(np.abs(ratio[~after] - 1.0) < 0.02) and np.all(ratio[after] < 0.95)
+    after = times >= float(reported[0][1]) - 1.0e-6
+    assert 0 < int(reported[0][0]) and np.all(np.abs(ratio[~after] - 1.0) < 0.02) and np.all(ratio[after] < 0.95)
     assert "at the end: energy ratio" in done.stderr
 
 

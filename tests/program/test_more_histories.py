@@ -285,7 +285,7 @@ def test_a_run_that_goes_on_has_the_same_rows(exe, tmp_path, method):
 
 
 def with_sections(text, implicit=False):
-    """A deck with a section that every element of its mesh is cut by, told in each cycle, and the same without it."""
+    """A deck with a section that every element of its mesh is cut by, reported in each cycle, and the same without it."""
     nodes, shells = (max(int(line.split(",")[0]) for block in re.findall(rf"^\*{name}\n([^*]*)", text, re.M)
                          for line in block.split()) for name in ("NODE", "ELEMENT_SHELL"))
     deck = Deck("").add("*SET_NODE_LIST_GENERATE", (91,), (1, nodes)).add("*SET_SHELL_LIST_GENERATE", (92,), (1, shells))

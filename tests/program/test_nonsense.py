@@ -77,12 +77,12 @@ def test_fields_of_explicit_runs_warn_in_implicit_ones(said):
     before = said(text)
     assert before[0] == 0
     more = ("*CONTROL_TIMESTEP\n1.0e-5,0.5,1\n*CONTROL_CONTACT\n1.0,\n,,,,,,1\n*END")
-    status, told = said(text.replace("*END", more), "tssfac=0.8")
-    assert status == 0, told
+    status, reported = said(text.replace("*END", more), "tssfac=0.8")
+    assert status == 0, reported
     for name in ("DTINIT", "ISDO", "ECDT"):
-        assert told.count(f"({name}): ") == 1, (name, told)
-    assert told.count("has no effect with the implicit method") - before[1].count("has no effect with the implicit method") == 4
-    assert '"tssfac=0.8" on the command line has no effect' in told
+        assert reported.count(f"({name}): ") == 1, (name, reported)
+    assert reported.count("has no effect with the implicit method") - before[1].count("has no effect with the implicit method") == 4
+    assert '"tssfac=0.8" on the command line has no effect' in reported
 
 
 @pytest.mark.parametrize("given, meant", [

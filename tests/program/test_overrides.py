@@ -128,14 +128,14 @@ def test_one_rule_for_card_and_command_line(said, card_1, card_2, word, message)
     assert text.count("on the command line") == 1
 
 
-@pytest.mark.parametrize("scale, word, told", [("1.2", None, "TSSFAC is above 1: "), ("0.9", "tssfac=1.2", '"tssfac=1.2" on the command line is above 1: '),
+@pytest.mark.parametrize("scale, word, reported", [("1.2", None, "TSSFAC is above 1: "), ("0.9", "tssfac=1.2", '"tssfac=1.2" on the command line is above 1: '),
                                                ("1.2", "tssfac=0.9", None), ("1.0", "tssfac=1.0", None)])
-def test_scale_of_the_step_above_one_is_warned_of(said, scale, word, told):
+def test_scale_of_the_step_above_one_is_warned_of(said, scale, word, reported):
     deck = slide("2,,2.0e5,").replace("0.0,0.9,0,0.0,0.0,9001", f"0.0,{scale}")
     status, text = said(deck, *([word] if word else []))
     assert status == 0, text
-    assert ("is above 1: the run may become unstable" in text) == bool(told)
-    assert not told or text.count(told) == 1
+    assert ("is above 1: the run may become unstable" in text) == bool(reported)
+    assert not reported or text.count(reported) == 1
 
 
 def test_first_step_that_the_curve_overrules_is_warned_of(said):
@@ -155,11 +155,11 @@ def test_curve_number_below_0_stays_a_mistake_of_an_implicit_deck(said):
     assert status == 1 and "LCTM" in text and "is not a curve number" in text, text
 
 
-@pytest.mark.parametrize("gamma, beta, told", [("0.6", "", "GAMMA 6.000000E-01 and BETA 2.500000E-01"), ("0.6", "0.3", "3.025000E-01"),
+@pytest.mark.parametrize("gamma, beta, reported", [("0.6", "", "GAMMA 6.000000E-01 and BETA 2.500000E-01"), ("0.6", "0.3", "3.025000E-01"),
                                                ("0.6", "0.3025", None), ("0.5", "0.25", None), ("", "0.3", None), ("", "", None)])
-def test_newmark_that_is_not_stable_at_every_step_is_warned_of(said, gamma, beta, told):
+def test_newmark_that_is_not_stable_at_every_step_is_warned_of(said, gamma, beta, reported):
     """Unconditional stability needs BETA >= (GAMMA + 1/2)^2/4; statics has no such limit."""
-    for mass, expected in ((1, told), (0, None)):
+    for mass, expected in ((1, reported), (0, None)):
         deck = with_cards(f"*CONTROL_IMPLICIT_DYNAMICS\n{mass},{gamma},{beta}", deck=pulled(1.0, dt=0.5))
         status, text = said(deck)
         assert status == 0, text
@@ -220,7 +220,7 @@ IMPLICIT = SLIDELINE + "\n*CONTROL_IMPLICIT_GENERAL\n1,1.0e-4"
 TIE = SLIDELINE + "\n\n,,1"
 
 
-@pytest.mark.parametrize("cards, words, told", [
+@pytest.mark.parametrize("cards, words, reported", [
     (IMPLICIT, "tssfac=0.8", "{0} has no effect with the implicit method"),
     (IMPLICIT, "punit=3 pen=0.5", "{0} asks for a share of the largest stable penalty"),
     (SLIDELINE, "tssfac=1.2", "{0} is above 1: the run may become unstable"),
@@ -233,8 +233,8 @@ TIE = SLIDELINE + "\n\n,,1"
     (TIE, "punit=3 pen=0.5", "interface 1 is tied: its penalty cannot be a share of the largest stable penalty; {0} has no effect on it"),
     (TIE, "fs=0.1", "interface 1 is tied: {0} has no effect on it"),
     ("", "pen=1e5", "{0} changes PEN of all interfaces, but the deck has none")])
-def test_messages_of_words_say_where_they_stand(said, cards, words, told):
+def test_messages_of_words_say_where_they_stand(said, cards, words, reported):
     deck = re.sub(r"\*CONTACT_2D[^*]*", "", drop(end_time=0.001).text()).rsplit("*END", 1)[0] + cards
     deck = deck.replace("0.0,0.9,0,0.0,0.0,9001", "1.0e-5,0.9")
     _, text = said(deck + "\n*END\n", *words.split())
-    assert text.count(told.format(*(f'"{word}" on the command line' for word in words.split()))) == 1, text
+    assert text.count(reported.format(*(f'"{word}" on the command line' for word in words.split()))) == 1, text

@@ -260,13 +260,13 @@ def test_forces_go_to_neighbours_alone(tmp_path):
     deck.fix(nodes[::2049], x=1, y=1)
     (tmp_path / "job.k").write_text(with_cycles(deck.output(plot=1.0, glstat=1.0).text(), 10), encoding="ascii")
     run(tmp_path, 8, "i=job.k", "d=out")
-    told = re.search(r"messages (\S+) \((\S+)\), bytes (\S+) \((\S+)\), calls of all 1.00 \(1.00\), bytes by them 80.00 \(80.00\)",
+    reported = re.search(r"messages (\S+) \((\S+)\), bytes (\S+) \((\S+)\), calls of all 1.00 \(1.00\), bytes by them 80.00 \(80.00\)",
                      (tmp_path / "out" / "job.log").read_text())
     # Eight tiles side by side, each with a column of three nodes in common with the next.
-    assert [float(word) for word in told.groups()] == [14 / 8, 2.0, 14 * 48 / 8, 96.0]
+    assert [float(word) for word in reported.groups()] == [14 / 8, 2.0, 14 * 48 / 8, 96.0]
 
 
-def test_an_error_ends_all_processes_and_is_told_once(tmp_path):
+def test_an_error_ends_all_processes_and_is_reported_once(tmp_path):
     """A run that goes wrong, a deck that is refused and a method that has one process."""
     deck = Deck("crushed").control(0.02)
     deck.part(1).elastic(1000.0, 1.0e6, 0.3)
@@ -277,8 +277,8 @@ def test_an_error_ends_all_processes_and_is_told_once(tmp_path):
         deck.prescribe(int(node), 2, 0, 1)
     (tmp_path / "job.k").write_text(deck.output(glstat=1.0e-3).text(), encoding="ascii")
     said = [run(tmp_path, n, "i=job.k", f"d=crushed_{n}", status=2) for n in (1, 3)]
-    told = [[line for line in done.stderr.splitlines() if "element" in line] for done in said]
-    assert len(told[0]) == 1 and told[0] == told[1], said
+    reported = [[line for line in done.stderr.splitlines() if "element" in line] for done in said]
+    assert len(reported[0]) == 1 and reported[0] == reported[1], said
     (tmp_path / "bad.k").write_text("*KEYWORD\n*PART\n", encoding="ascii")
     done = run(tmp_path, 3, "i=bad.k", status=1)
     assert done.stderr.count("bad.k") == run(tmp_path, 1, "i=bad.k", status=1).stderr.count("bad.k")
@@ -345,8 +345,8 @@ def going_run(folder, processes):
         children = subprocess.run(["pgrep", "-P", str(run.pid)], capture_output=True, text=True, check=True).stdout
         of_rank = {}
         for child in map(int, children.split()):
-            told = pathlib.Path(f"/proc/{child}/environ").read_bytes().split(b"\0")
-            of_rank.update({int(word.partition(b"=")[2]): child for word in told
+            reported = pathlib.Path(f"/proc/{child}/environ").read_bytes().split(b"\0")
+            of_rank.update({int(word.partition(b"=")[2]): child for word in reported
                             if word.startswith(b"OMPI_COMM_WORLD_RANK=")})
         try:
             yield run, [of_rank[rank] for rank in range(processes)]

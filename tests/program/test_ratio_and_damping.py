@@ -53,34 +53,34 @@ def damped(rate, factors=(0.0, 0.0), curve=None):
 
 
 @pytest.mark.parametrize("share, turns", [(0.1, False), (0.99, False), (1.01, False), (1.99, False), (2.01, True), (1000.0, True)])
-def test_damping_beyond_the_step_is_told(slideline, tmp_path, share, turns):
+def test_damping_beyond_the_step_is_reported(slideline, tmp_path, share, turns):
     """Told once where D dt passes 1; with the factor that velocities really fall by, and whether they change sign."""
     done = slideline("d=o", deck=damped(share / STEP))
     assert done.returncode == 0
     log = (tmp_path / "o" / "job.log").read_text()
-    told = [line for line in log.splitlines() if "*DAMPING_GLOBAL acts" in line]
-    assert len(told) == (share > 1.0), log
+    reported = [line for line in log.splitlines() if "*DAMPING_GLOBAL acts" in line]
+    assert len(reported) == (share > 1.0), log
     v = numbers(tmp_path / "o" / "job.nodout.csv", "vx")
     keep = (2.0 - share) / (2.0 + share)
     # Written velocities are means of two that stand half a step apart each: these fall by the same factor.
     assert v[4] / v[3] == pytest.approx(keep, rel=1.0e-9) and abs(v[4]) < abs(v[3]) and (v[4] * v[3] < 0.0) == turns
-    if told:
-        assert "VALDMP" in told[0] and ("change sign" in told[0]) == turns
-        left, meant = (float(text) for text in re.search(r"multiplies velocities by (\S+), the exact factor exp\(-D dt\) is ([^ ,;]+)", told[0]).groups())
+    if reported:
+        assert "VALDMP" in reported[0] and ("change sign" in reported[0]) == turns
+        left, meant = (float(text) for text in re.search(r"multiplies velocities by (\S+), the exact factor exp\(-D dt\) is ([^ ,;]+)", reported[0]).groups())
         assert left == pytest.approx(keep, rel=1.0e-4) and meant == pytest.approx(math.exp(-share), rel=1.0e-4)
 
 
-@pytest.mark.parametrize("factors, curve, told", [
+@pytest.mark.parametrize("factors, curve, reported", [
     ((0.0, 1.5), None, True),                                                  # STY
     ((0.5, 0.5), None, False),
     ((0.0, 0.0), [(0.0, 0.0), (4 * STEP, 1.2 / STEP), (9 * STEP, 0.0)], True),  # within the run
     ((0.0, 0.0), [(0.0, 0.0), (1.0, 10.0 / STEP)], False),                     # after it
 ])
-def test_factors_and_curves_count(slideline, tmp_path, factors, curve, told):
+def test_factors_and_curves_count(slideline, tmp_path, factors, curve, reported):
     assert slideline("d=o", deck=damped(0.9 / STEP, factors, curve)).returncode == 0
     log = (tmp_path / "o" / "job.log").read_text()
-    assert log.count("*DAMPING_GLOBAL acts") == told, log
-    if told:
+    assert log.count("*DAMPING_GLOBAL acts") == reported, log
+    if reported:
         assert ("largest ordinate of curve 7" if curve else "VALDMP") in log
 
 
@@ -94,7 +94,7 @@ def test_cards_of_one_part_add_up(slideline, tmp_path):
         assert v[4] / v[3] == pytest.approx((2.0 - rate * STEP) / (2.0 + rate * STEP), rel=1.0e-9)
 
 
-def test_energies_that_do_not_add_up_are_told_once_while_the_run_goes_on(slideline, tmp_path):
+def test_energies_that_do_not_add_up_are_reported_once_while_the_run_goes_on(slideline, tmp_path):
     """Waves of two elements at a fifth of the wave speed: viscous forces are right to first order only."""
     deck = Deck("short waves").control(20.0).elastic(1.0, 1.0, 0.3).output(glstat=0.5)
     deck.add("*PART", "row", (1, 1, 1)).add("*SECTION_SHELL", (1, 13), (1.0,))
@@ -102,9 +102,9 @@ def test_energies_that_do_not_add_up_are_told_once_while_the_run_goes_on(slideli
         deck.add("*INITIAL_VELOCITY_NODE", (node, 0.06 * (-1) ** (k // 2), 0.2 * (-1) ** (k % 2 + k // 2)))
     done = slideline(deck=deck)
     assert done.returncode == 0, done.stderr
-    told = re.findall(r"warning: at cycle (\d+), time \S+: energy ratio (\S+), unaccounted energy \S+:", done.stderr)
-    assert len(told) == 1
+    reported = re.findall(r"warning: at cycle (\d+), time \S+: energy ratio (\S+), unaccounted energy \S+:", done.stderr)
+    assert len(reported) == 1
     ratio, cycles = (numbers(tmp_path / "job.glstat.csv", name) for name in ("energy_ratio", "cycle"))
     first = int(np.argmax(np.abs(ratio - 1.0) > 0.1))
-    assert int(told[0][0]) == cycles[first] and float(told[0][1]) == pytest.approx(ratio[first], rel=1e-6)
+    assert int(reported[0][0]) == cycles[first] and float(reported[0][1]) == pytest.approx(ratio[first], rel=1e-6)
     assert "at the end: energy ratio" in done.stderr

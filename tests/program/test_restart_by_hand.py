@@ -198,8 +198,8 @@ static int fails(const char *kind, int file, const char *name) {
   count++;
   if (count < atol(getenv("FAULT_AT"))) return 0;
   if (getenv("FAULT_ONCE") && count > atol(getenv("FAULT_AT"))) return 0;
-  FILE *told = fopen(getenv("FAULT_TOLD"), "w");
-  if (told) fclose(told);
+  FILE *reported = fopen(getenv("FAULT_TOLD"), "w");
+  if (reported) fclose(reported);
   errno = atoi(getenv("FAULT_ERRNO"));
   return 1;
 }
@@ -247,13 +247,13 @@ def test_a_fault_at_any_call_leaves_a_whole_file(exe, job, checked, kind):
         for number in sorted({1, 2, 3, *range(4, CALLS[kind] + 1, max(1, CALLS[kind] // 8))}):
             folder = job.folder / "faulty"
             shutil.rmtree(folder, ignore_errors=True)
-            told = job.folder / "told"
-            told.unlink(missing_ok=True)
-            variables = {"LD_PRELOAD": str(library), "FAULT_KIND": kind, "FAULT_AT": str(number), "FAULT_TOLD": str(told),
+            reported = job.folder / "reported"
+            reported.unlink(missing_ok=True)
+            variables = {"LD_PRELOAD": str(library), "FAULT_KIND": kind, "FAULT_AT": str(number), "FAULT_TOLD": str(reported),
                          "FAULT_ERRNO": str(5 if number % 2 else 28), **({"FAULT_ONCE": "1"} if once else {})}
             done = subprocess.run([exe, "i=job.k", "d=faulty"], cwd=job.folder, capture_output=True, text=True, timeout=60,
                                   check=False, env={**os.environ, **variables})
-            if not told.exists():
+            if not reported.exists():
                 assert done.returncode == 0, done.stderr
                 continue
             tried += 1

@@ -108,7 +108,7 @@ def test_what_breaks_stays_broken(slideline, tmp_path, scene, kind):
     assert "tie points failed, from time" in (one / "job.log").read_text()
     ratio = numbers(one / "job.glstat.csv", "energy_ratio")
     assert max(abs(value - 1.0) for value in ratio) < 2.0e-3
-    # contact behind the ties is told as part of the interface
+    # contact behind the ties is reported as part of the interface
     assert set(numbers(one / "job.rcforc.csv", "interface")) == {1.0}
 
 
@@ -246,8 +246,8 @@ def test_step_obeys_ties(slideline, tmp_path):
     assert max(abs(value - 1.0) for value in numbers(tmp_path / "free/job.glstat.csv", "energy_ratio")) > 0.1
 
 
-@pytest.mark.parametrize("penalty, unit, told", [(None, 0, ""), (1.0, 2, ""), (1.0e4, 2, "the ties cost 9"), (5.0, 0, "as soft as")])
-def test_ties_of_unlikely_penalties_are_told(slideline, penalty, unit, told):
+@pytest.mark.parametrize("penalty, unit, reported", [(None, 0, ""), (1.0, 2, ""), (1.0e4, 2, "the ties cost 9"), (5.0, 0, "as soft as")])
+def test_ties_of_unlikely_penalties_are_reported(slideline, penalty, unit, reported):
     """Springs that cost most of the step, and springs that hold next to nothing. PUNIT 2 is a factor on a tenth of K L/A."""
     text = tied(5)
     if penalty:
@@ -256,7 +256,7 @@ def test_ties_of_unlikely_penalties_are_told(slideline, penalty, unit, told):
     done = slideline("d=out", "endtim=1.0e-5", deck=text)
     assert done.returncode == 0, done.stderr
     for words in ("the ties cost 9", "as soft as"):
-        assert (words in done.stderr) == (words == told), done.stderr
+        assert (words in done.stderr) == (words == reported), done.stderr
 
 
 def test_contact_behind_ties_counts_in_the_step(slideline, tmp_path):

@@ -40,10 +40,10 @@ def block(wall_normal=(0.0, 1.0), motions=(), fixed=(), loose=False, spcforc=Fal
 def test_moved_nodes_that_pass_a_wall_are_named(slideline, tmp_path, normal, motions, fixed, number, first):
     done = slideline("d=o", deck=block(normal, motions, fixed))
     assert done.returncode in (0, 2), done.stderr
-    told = re.findall(r"nodes that pass the wall while their motion is prescribed "
+    reported = re.findall(r"nodes that pass the wall while their motion is prescribed "
                       r"\(\*BOUNDARY_PRESCRIBED_MOTION\): (\d+), the first at node (\d+)",
                       (tmp_path / "o" / "job.log").read_text())
-    assert told == ([(str(number), str(first))] if number else [])
+    assert reported == ([(str(number), str(first))] if number else [])
 
 
 @pytest.mark.parametrize("order, ids", [

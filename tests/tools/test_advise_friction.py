@@ -44,7 +44,7 @@ def test_changes_count_pressed_nodes_alone():
     assert rubbing.changes(table) == (2, 4)
 
 
-def test_flutter_is_told_and_damping_silences_it(slideline, tmp_path, fluttering):
+def test_flutter_is_reported_and_damping_silences_it(slideline, tmp_path, fluttering):
     """Without damping from the start, which rings; with damping that fades out later."""
     item = run(slideline, tmp_path / "bare", re.sub(r"\*DAMPING_GLOBAL\n.*\n", "", fluttering))["undamped sliding"]
     assert item.seconds is None and "mu 0.5" in item.evidence and "studies/stability.md" in item.evidence

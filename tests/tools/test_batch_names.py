@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from test_batch_runs import BATCH, FAKE, call, deck, place, summary, told  # noqa: F401
+from test_batch_runs import BATCH, FAKE, call, deck, place, summary, reported  # noqa: F401
 
 
 def statuses(folder):
@@ -26,7 +26,7 @@ def test_decks_of_one_stem_have_folders_of_their_own(place):
     assert sorted(found.values()) == [str(k) for k in range(8)]
     assert found == {"A_K": "3", "a_dyn": "2", "a_k-2": "0", "a_key": "1", "B_KEY": "6", "b_k-2": "4", "b_k": "5",
                      "list.txt_k": "7"}
-    assert all(len(told(results / name)) == 1 for name in found)
+    assert all(len(reported(results / name)) == 1 for name in found)
     assert len({name.lower() for name in found}) == 8
 
 
@@ -55,10 +55,10 @@ def test_names_that_no_line_holds_are_refused_before_anything_runs(place, name):
     deck(place / "decks" / f"{name}.k")
     done = call(place, "run_folder.sh", "decks")
     assert done.returncode == 2 and "one?two.k" in done.stderr and "control character" in done.stderr
-    assert not list((place / "decks").rglob("told.txt"))
+    assert not list((place / "decks").rglob("reported.txt"))
     assert call(place, "sweep.sh", "-o", "out", f"decks/{name}.k", "ctype=1").returncode == 2
     assert call(place, "sweep.sh", "-o", "out", "decks/a.k", f"p:x={name}").returncode == 2
-    assert not list(place.rglob("told.txt"))
+    assert not list(place.rglob("reported.txt"))
 
 
 def test_blanks_at_the_end_of_a_name(place):
@@ -93,10 +93,10 @@ def test_only_what_is_included_here_is_left_out(place):
     for name, runs in (("first", 2), ("second", 3), ("mesh", 3)):
         deck(place / "decks" / f"{name}.k", 1, force=9.0)
         call(place, "run_folder.sh", "decks")
-        assert len(told(place / "decks" / "results" / "a")) == runs
+        assert len(reported(place / "decks" / "results" / "a")) == runs
     deck(place / "other" / "mesh.k", force=3.0)
     call(place, "run_folder.sh", "decks")
-    assert len(told(place / "decks" / "results" / "a")) == 4
+    assert len(reported(place / "decks" / "results" / "a")) == 4
 
 
 def test_a_run_that_can_not_begin_leaves_the_others(place):
@@ -141,7 +141,7 @@ def test_values_that_make_one_name(place):
     assert done.returncode == 0, done.stderr
     rows = summary(place / "out")
     assert len(rows) == len({name.lower() for name in rows}) == 5
-    assert sorted(told(place / "out" / name)[0].split("|")[-2] for name in rows) == [
+    assert sorted(reported(place / "out" / name)[0].split("|")[-2] for name in rows) == [
         f"p:f={value}" for value in ("1E3", "1e3", "x y", "x/y", "x:y")]
 
 
@@ -151,7 +151,7 @@ def test_sweeps_with_values_twice_or_without_are_refused(place, words):
     deck(place / "a.k")
     done = call(place, "sweep.sh", "-o", "out", "a.k", *words)
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1 and "sweep.sh" in done.stderr
-    assert not list(place.rglob("told.txt"))
+    assert not list(place.rglob("reported.txt"))
 
 
 @pytest.mark.parametrize("script, words", [("sweep.sh", ["ctype=1"]), ("run_folder.sh", [])])
@@ -173,7 +173,7 @@ def test_one_folder_for_two_batches_is_refused(place, script, words):
 def test_wrong_numbers_are_refused(place, words):
     deck(place / "decks" / "a.k")
     done = call(place, "run_folder.sh", *words, "decks")
-    assert done.returncode == 2 and done.stderr and not list(place.rglob("told.txt"))
+    assert done.returncode == 2 and done.stderr and not list(place.rglob("reported.txt"))
 
 
 @pytest.mark.skipif(not shutil.which("flock"), reason="no flock")
@@ -186,7 +186,7 @@ def test_two_batches_at_once_run_nothing_twice(place):
                               env={**os.environ, "SLIDELINE": str(program)}) for _ in range(3)]
     for running in calls:
         running.wait(timeout=60)
-    assert all(len(told(place / "decks" / "results" / name)) == 1 for name in "abcd")
+    assert all(len(reported(place / "decks" / "results" / name)) == 1 for name in "abcd")
 
 
 def test_a_batch_that_is_cut_short_goes_on(place):

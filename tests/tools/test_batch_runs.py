@@ -15,14 +15,14 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BATCH = ROOT / "tools" / "batch"
 
-#: Stands for the program: says what it was told, and ends as the deck's first line says.
+#: Stands for the program: says what it was reported, and ends as the deck's first line says.
 FAKE = """#!/bin/sh
 [ "$1" != --version ] || { echo fake 1; exit 0; }
 for word in "$@"; do
   case $word in i=*) deck=${word#i=} ;; d=*) folder=${word#d=} ;; jobid=*) job=${word#jobid=} ;; esac
 done
-printf '%s|' "$@" >>"$folder/told.txt"
-echo >>"$folder/told.txt"
+printf '%s|' "$@" >>"$folder/reported.txt"
+echo >>"$folder/reported.txt"
 printf ' Elapsed time        = 1.250 seconds\\n Warnings            = 3\\n' >"$folder/$job.log"
 printf ' %-32s %s\\n' 'cycle no.' 17 time 2.5E-01 'time step' 9.0 'energy ratio' 1.01 >"$folder/status.out"
 echo "time,fx
@@ -59,8 +59,8 @@ def summary(folder):
         return {row["run"]: row for row in csv.DictReader(stream)}
 
 
-def told(folder):
-    return (folder / "told.txt").read_text().splitlines()
+def reported(folder):
+    return (folder / "reported.txt").read_text().splitlines()
 
 
 @pytest.fixture
@@ -82,7 +82,7 @@ def test_folder_of_decks(place, decks):
         ("first one", "0", "normal"), ("second", "2", "error termination"), ("third", "139", "crashed")]
     assert {k: rows["first one"][k] for k in ("time", "cycles", "seconds", "warnings", "energy_ratio")} == {
         "time": "2.5E-01", "cycles": "17", "seconds": "1.250", "warnings": "3", "energy_ratio": "1.01"}
-    assert told(decks / "results" / "first one") == [
+    assert reported(decks / "results" / "first one") == [
         "i=my decks/first one.k|d=my decks/results/first one|jobid=first one|ctype=5|p:text=a b|"]
     assert "error termination" in done.stdout and "2 of the runs" in done.stderr
 
@@ -92,7 +92,7 @@ def test_what_has_ended_well_is_passed_over(place, decks):
 
     def again(*words):
         call(place, "run_folder.sh", "-o", results, "my decks", *words)
-        return [len(told(results / name)) for name in ("first one", "second")]
+        return [len(reported(results / name)) for name in ("first one", "second")]
     assert again() == [1, 1]
     assert again() == [1, 2]
     deck(decks / "mesh part.k", 1, 3.0)
@@ -102,7 +102,7 @@ def test_what_has_ended_well_is_passed_over(place, decks):
     assert summary(results)["third"]["status"] == "0"
     assert again("endtim=1.0") == [3, 5]
     call(place, "run_folder.sh", "--fresh", "-o", results, "my decks", "endtim=1.0")
-    assert len(told(results / "first one")) == 4
+    assert len(reported(results / "first one")) == 4
 
 
 def test_many_runs_share_what_goes_before_them(place):
@@ -117,7 +117,7 @@ def test_many_runs_share_what_goes_before_them(place):
     assert {name for name, row in rows.items() if row["status"] != "0"} == {"run 3", "run 7"}
     deck(place / "many" / "run 20.k", 0, 3.0)
     call(place, "run_folder.sh", "-j", 2, "many")
-    assert {number for number in range(40) if number != 3 and len(told(place / "many" / "results" / f"run {number}")) == 2} == {7, 20}
+    assert {number for number in range(40) if number != 3 and len(reported(place / "many" / "results" / f"run {number}")) == 2} == {7, 20}
 
 
 def test_another_build_runs_anew(place, decks):
@@ -126,7 +126,7 @@ def test_another_build_runs_anew(place, decks):
     for more, times in (("", 1), ("", 1), ("# edited\n", 2)):
         program.write_text(program.read_text() + more)
         call(place, "run_folder.sh", "my decks")
-        assert len(told(decks / "results" / "first one")) == times
+        assert len(reported(decks / "results" / "first one")) == times
 
 
 def signalled(place, program, there, *words):
@@ -186,7 +186,7 @@ def test_sweep_runs_every_combination(place):
     assert done.returncode == 0, done.stderr
     rows = summary(place / "swept here")
     assert list(rows) == [f"ctype_{c}_speed_{s}" for c in (1, 5) for s in ("-1.5", "2e3", "_x_y")]
-    assert told(place / "swept here" / "ctype_5_speed__x_y")[0].endswith("|ctype=5|p:speed=/x y|")
+    assert reported(place / "swept here" / "ctype_5_speed__x_y")[0].endswith("|ctype=5|p:speed=/x y|")
 
 
 def test_arrays_share_the_work(place, decks):
@@ -194,11 +194,11 @@ def test_arrays_share_the_work(place, decks):
         done = call(place, "slurm.sh", "run_folder.sh", "my decks", SLURM_SUBMIT_DIR=str(ROOT),
                     SLURM_ARRAY_TASK_ID=str(task), SLURM_ARRAY_TASK_COUNT="2")
         assert done.returncode == 0, done.stderr
-        there = {path.parent.name for path in (decks / "results").glob("*/told.txt")}
+        there = {path.parent.name for path in (decks / "results").glob("*/reported.txt")}
         assert there == ({"first one", "third"} if task == 0 else {"first one", "second", "third"})
     done = call(place, "slurm.sh", "run_folder.sh", "--collect", "my decks", SLURM_SUBMIT_DIR=str(ROOT))
     assert done.returncode == 1 and len(summary(decks / "results")) == 3
-    assert all(len(told(path.parent)) == 1 for path in (decks / "results").glob("*/told.txt"))
+    assert all(len(reported(path.parent)) == 1 for path in (decks / "results").glob("*/reported.txt"))
 
 
 def test_job_of_many_processes(place):

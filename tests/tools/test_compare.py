@@ -29,8 +29,8 @@ def test_counts_have_no_impulse(column):
     """They have the other measures."""
     counts = np.arange(len(TIME), dtype=float)
     report = compare(table(**{column: counts}), table(**{column: counts}))
-    told = {name: [check.measure for check in report.checks if check.column == name] for name in ("force", column)}
-    assert "impulse" in told["force"] and told[column] == [measure for measure in told["force"] if measure != "impulse"]
+    reported = {name: [check.measure for check in report.checks if check.column == name] for name in ("force", column)}
+    assert "impulse" in reported["force"] and reported[column] == [measure for measure in reported["force"] if measure != "impulse"]
     late = compare(table(**{column: counts + 1.0}), table(**{column: counts}), columns=[column])
     assert failed(late) == {"values", "peak", "final"}
 
@@ -115,7 +115,7 @@ def entities(factor):
     return History("nodout", {**rows, "uy": values})
 
 
-def test_entities_are_told_apart():
+def test_entities_are_reported_apart():
     report = compare(entities(0.9), entities(1.0))
     assert {check.entity for check in report.checks if not check.passed} == {"node 2"}
 

@@ -99,7 +99,7 @@ def test_measure_finds_the_ellipse():
                          ).scatter > 1e-3
 
 
-def test_deviation_is_told_apart_by_place():
+def test_deviation_is_reported_apart_by_place():
     x = np.linspace(-1.0, 1.0, 201)
     pressure = lines.ellipse(x, 1.0, 2.0)
     pressure[0] += 0.5

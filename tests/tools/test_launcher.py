@@ -55,7 +55,7 @@ def test_build_that_is_asked_for(start):
     assert start(ZEN_2, SLIDELINE_LEVEL="x86-64-v4").returncode == 1
 
 
-def test_old_processor_is_told(start):
+def test_old_processor_is_reported(start):
     done = start(OPTERON)
     assert done.returncode == 1 and done.stdout == ""
     assert "no build" in done.stderr

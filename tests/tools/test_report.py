@@ -129,11 +129,11 @@ def test_report_draws_histories_that_were_asked_for(tmp_path, slideline, name, t
     page, rows = read_page(write_report(folder)), read_csv(folder / f"{deck.stem}.{name}.csv")
     drawn = [one["alt"] for one in page.pictures if one["alt"].startswith(f"{title}: ")]
     assert drawn and len(set(drawn)) == len(drawn)
-    told = [rows.where(group=rows["group"][0], time=rows["time"][-1])[column].sum() for column in sums]
-    told = [one for one in told if abs(one) > 1.0e-9]
-    assert bool(told) == bool(sums)
-    row = re.search(rf"group {rows['group'][0]} (.*?) (group|to the top)", page.text)[1].split() if told else []
-    assert {f"{one:.6g}" for one in told} <= set(row)
+    reported = [rows.where(group=rows["group"][0], time=rows["time"][-1])[column].sum() for column in sums]
+    reported = [one for one in reported if abs(one) > 1.0e-9]
+    assert bool(reported) == bool(sums)
+    row = re.search(rf"group {rows['group'][0]} (.*?) (group|to the top)", page.text)[1].split() if reported else []
+    assert {f"{one:.6g}" for one in reported} <= set(row)
 
 
 @pytest.fixture(scope="module")
@@ -195,7 +195,7 @@ def test_chosen_fields_and_states(collision, tmp_path, tool):
     assert tool("report", collision, "--field", "colour", "-o", tmp_path / "s.html").returncode == 2
 
 
-def test_a_program_that_is_not_there_is_told_with_how_to_name_one(collision, tmp_path):
+def test_a_program_that_is_not_there_is_reported_with_how_to_name_one(collision, tmp_path):
     page = write_report(collision, tmp_path / "page.html", program="/nowhere/slideline").read_text(encoding="utf-8")
     assert "cannot run the program /nowhere/slideline" in page and "name it by --program" in page
 

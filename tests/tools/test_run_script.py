@@ -41,7 +41,7 @@ def run(tmp_path):
         done = subprocess.run([tmp_path / "tools/run.sh", *words], cwd=tmp_path, capture_output=True, text=True,
                               env={"PATH": "/usr/bin:/bin", "FOLDER": str(tmp_path / folder), "JOB": job})
         assert done.returncode == 0, done.stderr
-        call.told = done.stderr
+        call.reported = done.stderr
         return [(tmp_path / name).read_text().split() if (tmp_path / name).exists() else None for name in ("words", "drawn")]
     return call
 
@@ -69,4 +69,4 @@ def test_nodump_names_no_folder(run, tmp_path):
 def test_no_picture_without_the_tools(run, tmp_path):
     (tmp_path / "venv/bin/slideline-tools").unlink()
     assert run("out", "block", "block.k", "d=out") == [["i=block.k", "d=out"], None]
-    assert run.told == "no picture without the Python tools; the results are complete\n"
+    assert run.reported == "no picture without the Python tools; the results are complete\n"

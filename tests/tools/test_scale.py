@@ -79,8 +79,8 @@ def test_jobs_and_what_the_log_counts(tmp_path):
     assert [found[name] for name in ("messages", "most_messages", "bytes", "most_bytes", "bytes_to_all")] == [2, 3, 2860, 3584, 4544]
 
 
-@pytest.mark.parametrize("most, told", [(96.0, "yes"), (95.0, "no")])
-def test_page_says_whether_the_tiles_explain_the_counts(monkeypatch, tmp_path, plain_pictures, most, told):
+@pytest.mark.parametrize("most, reported", [(96.0, "yes"), (95.0, "no")])
+def test_page_says_whether_the_tiles_explain_the_counts(monkeypatch, tmp_path, plain_pictures, most, reported):
     """A strip on four processes sends 96 bytes from those in the middle."""
     monkeypatch.setattr(scale_tiles, "MESHES", {"strip": lambda: grid_mesh(2048, 2, 204.8, 0.2)})
     scale.all_cuts.cache_clear()
@@ -89,5 +89,5 @@ def test_page_says_whether_the_tiles_explain_the_counts(monkeypatch, tmp_path, p
     scale.page(table, tmp_path)
     scale.chart(table, tmp_path)
     scale.all_cuts.cache_clear()
-    assert f"| strip | 4096 | 4 | 1.5 | 2 | 72 | {most:g} | 80 | {told} |" in (tmp_path / "studies/scale.md").read_text()
+    assert f"| strip | 4096 | 4 | 1.5 | 2 | 72 | {most:g} | 80 | {reported} |" in (tmp_path / "studies/scale.md").read_text()
     assert (tmp_path / "scale.png").exists()

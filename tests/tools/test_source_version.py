@@ -29,19 +29,19 @@ def tree(tmp_path):
     return tmp_path / "tree"
 
 
-def told(folder):
+def reported(folder):
     """The commit that the program would tell."""
-    subprocess.run(["cmake", "-D", f"folder={folder}", "-D", f"output={folder}/told.f90", "-P", f"{folder}/src/source_version.cmake"],
+    subprocess.run(["cmake", "-D", f"folder={folder}", "-D", f"output={folder}/reported.f90", "-P", f"{folder}/src/source_version.cmake"],
                    check=True, capture_output=True)
-    return (folder / "told.f90").read_text().split("source_version = '")[1].split("'")[0]
+    return (folder / "reported.f90").read_text().split("source_version = '")[1].split("'")[0]
 
 
 def test_clone(tree):
     commit = git(tree, "rev-parse", "HEAD")[:12]
-    assert told(tree) == commit
+    assert reported(tree) == commit
     with open(tree / "CMakeLists.txt", "a", encoding="utf-8") as stream:
         stream.write("# changed\n")
-    assert told(tree) == commit + "-dirty"
+    assert reported(tree) == commit + "-dirty"
 
 
 def test_archive_within_another_repository(tree, tmp_path):
@@ -50,4 +50,4 @@ def test_archive_within_another_repository(tree, tmp_path):
     git(tree, "archive", "-o", str(tmp_path / "tree.tar"), "HEAD")
     with tarfile.open(tmp_path / "tree.tar") as archive:
         archive.extractall(tmp_path / "unpacked")
-    assert told(tmp_path / "unpacked") == git(tree, "rev-parse", "HEAD")[:12]
+    assert reported(tmp_path / "unpacked") == git(tree, "rev-parse", "HEAD")[:12]

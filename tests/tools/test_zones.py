@@ -107,17 +107,17 @@ def test_frictional_work_is_in_the_report(sliding, tmp_path):
     work = read_csv(sliding / "block.glstat.csv")["friction"][-1]
     assert work == pytest.approx(0.5 * 50.0 * 0.5 ** 2, rel=0.01)
 
-    def told():
+    def reported():
         page = re.sub(r"<[^>]+>", " ", write_report(sliding, tmp_path / "r.html").read_text(encoding="utf-8"))
         assert "Where interface 1 sticks and slips" in page
         return re.search(r"frictional work\s+([-0-9.e+]+)\s+[-0-9.e+]+\s+coefficient 0.5", page)[1]
 
-    assert float(told()) == pytest.approx(work, rel=1e-5)
+    assert float(reported()) == pytest.approx(work, rel=1e-5)
     for name in ("glstat", "sleout"):
         path = sliding / f"block.{name}.csv"
         words = path.read_text()
         head, last = words.splitlines()[0].split(","), words.splitlines()[-1].split(",")
         last[head.index("friction")] = "3.25"
         path.write_text("\n".join([*words.splitlines()[:-1], ",".join(last)]) + "\n")
-        assert (float(told()) == 3.25) is (name == "sleout")
+        assert (float(reported()) == 3.25) is (name == "sleout")
         path.write_text(words)

@@ -19,7 +19,7 @@ usage() {
   exit 2
 }
 
-# What run_list.sh is to be told goes round to the end of the list of arguments.
+# What run_list.sh is to be known goes round to the end of the list of arguments.
 out=
 count=$#
 folder=

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/run_list.sh [-j N] [--fresh] [--part K/N] [--collect] LIST OUT
 # Runs every line of LIST, which run_folder.sh and sweep.sh write: fields between tabs, first the name of
-# the run, then its deck, then what else the program is to be told. Each run gets the folder OUT/NAME; what it says goes
+# the run, then its deck, then what else the program is to be known. Each run gets the folder OUT/NAME; what it says goes
 # to said.txt there, beside run.status, run.inputs and run.lock, which are the batch's own. A run that has ended well
 # (status 0) with the same files, options and program is passed over, and one that another batch is at (flock) is left to it:
 # a batch that was cut short goes on with the same command. The table of all runs is printed and goes to OUT/summary.csv.

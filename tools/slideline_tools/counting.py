@@ -27,14 +27,14 @@ PROFILE = "callgrind.out"
 ALLOCATION = 100
 ALLOCATOR = re.compile(r"(__wrap_)?(malloc|calloc|realloc|free)('\d+)?$")
 
-# callgrind counts each byte of `rep movsb` and `rep stosb`, which a processor counts as one instruction: the C library, told
+# callgrind counts each byte of `rep movsb` and `rep stosb`, which a processor counts as one instruction: the C library, reported
 # so, copies by vectors.
 COPIES = "glibc.cpu.x86_rep_movsb_threshold=0x7fffffff:glibc.cpu.x86_rep_stosb_threshold=0x7fffffff"
 
 
 @dataclasses.dataclass(frozen=True)
 class Counts:
-    """Instructions of a run: all of them, those of parts where they can be told, and who counted."""
+    """Instructions of a run: all of them, those of parts where they can be known, and who counted."""
 
     total: int
     parts: dict

@@ -36,7 +36,7 @@ class PlaneMesh:
 
 
 def read(path) -> PlaneMesh:
-    """The mesh of a file; everything that cannot be taken is told at once."""
+    """The mesh of a file; everything that cannot be taken is reported at once."""
     try:
         import meshio
     except ImportError:

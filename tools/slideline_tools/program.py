@@ -109,8 +109,8 @@ def find_program(program: str | os.PathLike | None = None) -> str:
 def installed_from() -> list[pathlib.Path]:
     """The tree whose folder `tools` pip has installed; empty where these tools come from elsewhere."""
     try:
-        told = importlib.metadata.distribution("slideline-tools").read_text("direct_url.json")
-        url = urllib.parse.urlsplit(json.loads(told or "{}").get("url", ""))
+        reported = importlib.metadata.distribution("slideline-tools").read_text("direct_url.json")
+        url = urllib.parse.urlsplit(json.loads(reported or "{}").get("url", ""))
     except (importlib.metadata.PackageNotFoundError, ValueError):
         return []
     return [pathlib.Path(urllib.request.url2pathname(url.path)).parent] if url.scheme == "file" else []

@@ -32,7 +32,7 @@ def count_yardstick(folder):
 
 
 def count_routine(kernel, deck, folder, words=()):
-    """Of the element routine alone, per element; `words`: what else the program is told."""
+    """Of the element routine alone, per element; `words`: what else the program is reported."""
     first, second = ROUTINE_CALLS
     return difference([[kernel, deck, "1", "1000", str(calls), *words] for calls in (first, second)],
                       ROUTINE_WORK * (second - first), folder)

@@ -109,7 +109,7 @@ LAWS = {
 
 
 def words_of(name):
-    """What the program of the routine is to be told of a law."""
+    """What the program of the routine is to be known of a law."""
     return ["elastic"] if name.endswith(ELASTIC) else []
 
 

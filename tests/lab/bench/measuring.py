@@ -161,7 +161,7 @@ def measure_units(kernel, deck, threads, entries, calls=20000, rounds=5000):
 
 
 def without_others(value, share, threads, seconds):
-    """A time without that in which others had the processor, as far as it can be told.
+    """A time without that in which others had the processor, as far as it can be known.
 
     With one thread it is in proportion to the processor time; threads that wait for each other use it up. What took
     fewer `seconds` than some turns of the scheduler may have had the processor to itself: it stays.

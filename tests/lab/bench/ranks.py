@@ -79,8 +79,8 @@ def follow(launcher):
     """{number of a process: [(largest, present) resident kB, ...]} of those of a launcher, looked at while they run."""
     found = {}
     while launcher.poll() is None:
-        told = subprocess.run(["pgrep", "-P", str(launcher.pid)], capture_output=True, text=True, check=False).stdout
-        for child in told.split():
+        reported = subprocess.run(["pgrep", "-P", str(launcher.pid)], capture_output=True, text=True, check=False).stdout
+        for child in reported.split():
             try:
                 rank = re.search(rb"OMPI_COMM_WORLD_RANK=(\d+)", pathlib.Path(f"/proc/{child}/environ").read_bytes())
                 status = pathlib.Path(f"/proc/{child}/status").read_text(encoding="ascii")

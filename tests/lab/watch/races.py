@@ -106,8 +106,8 @@ def plant_all(work: Path, jobs: int) -> int:
         _, places, _ = run(program, work / f"plant_{number}", text, (), 2)
         found = sorted(place for place in places if place.startswith(plant.where))
         missed += not found
-        told = f"found, {found[0]}" if found else f"MISSED among {' '.join(sorted(places))}"
-        print(f"{plant.name}: {told} ({len(places)} places reported)", flush=True)
+        reported = f"found, {found[0]}" if found else f"MISSED among {' '.join(sorted(places))}"
+        print(f"{plant.name}: {reported} ({len(places)} places reported)", flush=True)
     return missed
 
 

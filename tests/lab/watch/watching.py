@@ -43,7 +43,7 @@ def side_by_side(work: Callable, cases: Iterable, jobs: int) -> list:
 
 
 def jobs_of_machine() -> int:
-    """Cores to use unless told otherwise."""
+    """Cores to use unless reported otherwise."""
     return os.cpu_count() or 1
 
 

@@ -90,11 +90,11 @@ def static_fit(run, name, kind, fit):
     fit.contact(kind, ramp=[(0.0, 0.0), (1.0, 1.0)])
     result = run.program(fit.deck.output(plot=1.0))
     run.true(f"{name}: all segments stand for arcs",
-             told("{0} of {0}".format(fit.facets[0]), "{0} of {0}".format(fit.facets[1])) in log_of(result))
+             reported("{0} of {0}".format(fit.facets[0]), "{0} of {0}".format(fit.facets[1])) in log_of(result))
     return fit.found(result)
 
 
-def told(slave, master):
+def reported(slave, master):
     """What the log says of arcs."""
     return f"arcs: {slave} slave segments, {master} master"
 
@@ -252,7 +252,7 @@ def check_outlines(run):
         nodes, quads = ring(2.0, 3.0, 1, 24)
         bore = deck.mesh(nodes, quads).reshape(-1, 2)
         deck.node_set(1, [*body[:, 1], body[0, 1]]).node_set(2, [*bore[::-1, 0], bore[-1, 0]]).contact(1, 2, 5, 1.0, unit=1)
-        run.true(f"{name}: arcs on fillets alone", told(f"{arcs} of {len(outline)}", "24 of 24") in log_of(run.program(deck)))
+        run.true(f"{name}: arcs on fillets alone", reported(f"{arcs} of {len(outline)}", "24 of 24") in log_of(run.program(deck)))
 
 
 def check(run):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Contact returns no more than it took and says where it was limited; what it loses is told; contact that holds its
+"""Contact returns no more than it took and says where it was limited; what it loses is reported; contact that holds its
 energy, and damping, are left alone."""
 import re
 
@@ -49,7 +49,7 @@ def bodies(energy):
     return energy["total"] - energy["contact"]
 
 
-def told(result, pattern):
+def reported(result, pattern):
     return list(pattern.finditer(log_of(result)))
 
 
@@ -116,8 +116,8 @@ def check_corners(run):
         run.check(f"{name}: made at any time / E0",
                   np.max(springs["stored"] - springs["energy"]) / start, 0.02)
         run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0)
-        first, in_all, limited = told(result, FIRST), told(result, IN_ALL), told(result, LIMITED)
-        run.true(f"{name}: nothing is told to be made", "created" not in [m[4] for m in first] + [m[2] for m in in_all])
+        first, in_all, limited = reported(result, FIRST), reported(result, IN_ALL), reported(result, LIMITED)
+        run.true(f"{name}: nothing is reported to be made", "created" not in [m[4] for m in first] + [m[2] for m in in_all])
         if expected == "limited":
             run.true(f"{name}: the summary tells of limited forces",
                      bool(limited) and 0 < int(limited[-1][2]) < int(limited[-1][3]) and 0.0 <= float(limited[-1][4]) < 1.0)
@@ -131,7 +131,7 @@ def check_corners(run):
             run.check(f"{name}: the place is where they touch, |x|", abs(float(first[0][9])), 0.6)
         else:
             run.check(f"{name}: neither made nor lost / E0", gain, 0.0)
-            run.true(f"{name}: nothing is said in the cycles nor in the summary", not told(result, ANY))
+            run.true(f"{name}: nothing is said in the cycles nor in the summary", not reported(result, ANY))
 
 
 def check_lives(run):
@@ -149,7 +149,7 @@ def check_lives(run):
         run.check(f"{name}: born loaded, made / held at birth",
                   -springs["energy"][-1] / springs["stored"][row], 1.0 - share)
         run.true(f"{name}: born loaded, the log says created",
-                 [m[4] for m in told(result, FIRST)] == ["created"] and [m[2] for m in told(result, IN_ALL)] == ["created"])
+                 [m[4] for m in reported(result, FIRST)] == ["created"] and [m[2] for m in reported(result, IN_ALL)] == ["created"])
         death = 0.99 / SOUND
         result = run.program(flights("dies loaded", kind, (0.0, 0.0, death)), name=f"dead_{kind}")
         energy, springs = result.table("glstat"), result.table("sleout")
@@ -159,7 +159,7 @@ def check_lives(run):
                   springs["energy"][-1] / springs["stored"][row], 1.0)
         run.check(f"{name}: dies loaded, nothing is held", springs["stored"][-1], 0.0)
         run.true(f"{name}: dies loaded, the log says lost",
-                 [m[4] for m in told(result, FIRST)] == ["lost"] and [m[2] for m in told(result, IN_ALL)] == ["lost"])
+                 [m[4] for m in reported(result, FIRST)] == ["lost"] and [m[2] for m in reported(result, IN_ALL)] == ["lost"])
 
 
 def check_endeng(run):
@@ -186,7 +186,7 @@ def check_sound(run):
         balance = (springs["energy"] - springs["stored"]) / energy["total"][0]
         run.check(f"{name}: bars, made or lost at any time / E0", balance, 0.0)
         run.true(f"{name}: bars, the springs did take energy", np.max(springs["stored"]) > 0.05 * energy["total"][0])
-        run.true(f"{name}: bars, no warning", not told(result, ANY))
+        run.true(f"{name}: bars, no warning", not reported(result, ANY))
         result = run.program(bars(kind, damping=50.0), name=f"damped_{kind}")
         energy, springs = result.table("glstat"), result.table("sleout")
         run.check(f"{name}: damped bars, taken by damping / E0",
@@ -197,21 +197,21 @@ def check_sound(run):
         run.check(f"{name}: damped bars, glstat has both / E0",
                   (springs["energy"] + springs["damping"] - energy["contact"]) / energy["total"][0],
                   0.0)
-        run.true(f"{name}: damped bars, no warning", not told(result, ANY))
+        run.true(f"{name}: damped bars, no warning", not reported(result, ANY))
         result = run.program(bars(kind, load=True), name=f"pressed_{kind}")
         energy, springs = result.table("glstat"), result.table("sleout")
         run.check(f"{name}: pressed bars, held by the springs / all",
                   springs["stored"][-1] / energy["total"][-1], 0.05)
         run.check(f"{name}: pressed bars, energy is what is stored / all",
                   (springs["energy"] - springs["stored"])[-1] / energy["total"][-1], 0.0)
-        run.true(f"{name}: pressed bars, no warning", not told(result, ANY))
+        run.true(f"{name}: pressed bars, no warning", not reported(result, ANY))
 
 
 def check_restart(run):
     """A run that goes on from a restart file tells the same and writes the same tables."""
     deck = polygons(2, 7)
     whole = run.program(deck, name="whole")
-    first = int(told(whole, AGAIN)[0][2])
+    first = int(reported(whole, AGAIN)[0][2])
     for label, cycle in (("before", first - 7), ("after", first + 9)):
         deck = polygons(2, 7)
         deck.add("*DATABASE_BINARY_D3DUMP", (cycle,))
@@ -222,19 +222,19 @@ def check_restart(run):
             run.true(f"restart {label} the warning: {table} has the same bytes",
                      again.csv_path(table).read_bytes() == whole.csv_path(table).read_bytes())
         run.true(f"restart {label} the warning: the summary is the same",
-                 [m[0] for m in told(again, LIMITED)][-1:] == [m[0] for m in told(whole, LIMITED)][-1:] != [])
-        run.true(f"restart {label} the warning: it is told once",
-                 [m[0] for m in told(again, AGAIN)] == ([m[0] for m in told(whole, AGAIN)] if label == "before" else []))
+                 [m[0] for m in reported(again, LIMITED)][-1:] == [m[0] for m in reported(whole, LIMITED)][-1:] != [])
+        run.true(f"restart {label} the warning: it is reported once",
+                 [m[0] for m in reported(again, AGAIN)] == ([m[0] for m in reported(whole, AGAIN)] if label == "before" else []))
     lost = run.program(polygons(12, 7), name="lost")
-    cycle = int(told(lost, FIRST)[0][2])
+    cycle = int(reported(lost, FIRST)[0][2])
     for label, at in (("before", cycle - 7), ("after", cycle + 9)):
         run.program(polygons(12, 7).add("*DATABASE_BINARY_D3DUMP", (at,)), name=f"lost_{label}")
         dump = run.work / f"lost_{label}" / f"lost_{label}.dump01.h5"
         again = run.program(polygons(12, 7).add("*DATABASE_BINARY_D3DUMP", (at,)), f"r={dump}", name=f"lost_again_{label}")
         run.true(f"restart {label} the loss: the summary is the same",
-                 [m[0] for m in told(again, IN_ALL)] == [m[0] for m in told(lost, IN_ALL)] != [])
-        run.true(f"restart {label} the loss: first warnings are those not told before",
-                 [m[0] for m in told(again, FIRST)] == [m[0] for m in told(lost, FIRST) if int(m[2]) >= at])
+                 [m[0] for m in reported(again, IN_ALL)] == [m[0] for m in reported(lost, IN_ALL)] != [])
+        run.true(f"restart {label} the loss: first warnings are those not reported before",
+                 [m[0] for m in reported(again, FIRST)] == [m[0] for m in reported(lost, FIRST) if int(m[2]) >= at])
     for kind, name in TYPES.items():
         whole_damped = run.program(bars(kind, damping=50.0), name=f"whole_{kind}")
         run.program(bars(kind, damping=50.0).add("*DATABASE_BINARY_D3DUMP", (41,)), name=f"first_{kind}")

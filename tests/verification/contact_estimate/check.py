@@ -112,9 +112,9 @@ def check_column(run):
     run.check("two squares: row stress of the slave", final(one, "contact")["row_stress"], 0.5 * weight, scale=strain)
     run.check("two rows each: estimate", final(two)["estimate"], 0.0, scale=strain)
     log = (one.folder / f"{one.job}.log").read_text()
-    told = re.search(r"interface 1: contact pressure and the stress behind it differ by ([\d.]+) %.*springs store "
+    reported = re.search(r"interface 1: contact pressure and the stress behind it differ by ([\d.]+) %.*springs store "
                      r"([\d.]+) times", log)
-    run.check("the summary tells the same", [float(one) for one in told.groups()],
+    run.check("the summary tells the same", [float(one) for one in reported.groups()],
               [50.0, 0.5 / 1.25 * 0.1])
 
 
@@ -148,9 +148,9 @@ def check_waves(run):
             deck.curve(1, [(0.0, PULL), (1.0, PULL)]).add("*LOAD_BODY_X", (1,)).curve(2, [(0.0, DAMPING), (1.0, DAMPING)])
             deck.add("*DAMPING_PART_MASS", (1, 2)).add("*DAMPING_PART_MASS", (2, 2))
         result = run.program(deck)
-        told = re.search(r"differ by ([\d.]+) % .*, without waves by ([\d.]+) %", (result.folder / f"{result.job}.log").read_text())
-        run.check(f"{name}: estimate", float(told[1]), 5.0)
-        run.check(f"{name}: without waves", float(told[2]), 0.0)
+        reported = re.search(r"differ by ([\d.]+) % .*, without waves by ([\d.]+) %", (result.folder / f"{result.job}.log").read_text())
+        run.check(f"{name}: estimate", float(reported[1]), 5.0)
+        run.check(f"{name}: without waves", float(reported[2]), 0.0)
 
 
 def check_step(run):
@@ -180,8 +180,8 @@ def check_roughness(run):
         jumps += np.sum((force[c] - force[b] - r * (force[b] - force[a])) ** 2) / (1 + (1 + r) ** 2 + r ** 2)
         forces += np.sum(force[c] ** 2)
     log = (result.folder / f"{result.job}.log").read_text()
-    told = float(re.search(r"noise of the force ([\d.]+) %", log)[1])
-    run.check("roughness of the force in the summary, two series of instants", told,
+    reported = float(re.search(r"noise of the force ([\d.]+) %", log)[1])
+    run.check("roughness of the force in the summary, two series of instants", reported,
               100.0 * np.sqrt(jumps / forces))
 
 

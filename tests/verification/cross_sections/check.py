@@ -108,12 +108,12 @@ def check_balance(run, kind):
     pressed = {side: np.stack([contact.where(side=side)[c] for c in ("fx", "fy")]) for side in ("slave", "master")}
     scale = np.abs(pressed["master"]).max()
     run.check(f"secforc, type {kind}: contact force", scale, 100.0)
-    for number, cut, side, told in ((1, rows[4:].ravel(), "master", "part cut off inside"), (2, rows[-1], "master", "master surface"),
+    for number, cut, side, reported in ((1, rows[4:].ravel(), "master", "part cut off inside"), (2, rows[-1], "master", "master surface"),
                                     (3, above[:8], "slave", "slave surface, plastic")):
         one = table.where(section=number)
         force = np.stack([one["fx"], one["fy"]])
         rest = inertia[:, :, np.asarray(cut) - 1].sum(axis=2) - pressed[side] - force
-        run.check(f"secforc, type {kind}: {told}: (inertia - contact - section) / contact",
+        run.check(f"secforc, type {kind}: {reported}: (inertia - contact - section) / contact",
                   rest / scale, np.zeros_like(rest))
 
 

@@ -16,7 +16,7 @@ BLOCK, PLATE = (7850.0, 210.0e9, 0.3), (2700.0, 69.0e9, 0.33)
 STOCK = ("NODE_TO_SURFACE", "ONE_WAY_SURFACE_TO_SURFACE", "SURFACE_TO_SURFACE", "SURFACE_TO_SURFACE_MORTAR")
 #: Element length and overlap, mm.
 SCENES = ((1.0, 0.02), (1.0, 0.2), (0.25, 0.2))
-#: Its master nodes come and go at corners: what it makes is told, not judged.
+#: Its master nodes come and go at corners: what it makes is reported, not judged.
 NTS_MAR = 5
 #: Types on the last of them, where not in full.
 FINE = (1, 4, 5, 7)

@@ -17,7 +17,7 @@ class Advice:
     `what`       one sentence
     `evidence`   figures read from the run
     `change`     what to change in the deck
-    `seconds`    expected saving of wall clock; None when it cannot be told
+    `seconds`    expected saving of wall clock; None when it cannot be known
     `basis`      where the expected saving comes from
     """
 

@@ -135,10 +135,10 @@ class Model:
     def __init__(self, start: Results, warnings: typing.Iterable[str] = ()) -> None:
         """`start`: the file of the state at time zero; `warnings`: what the program said of the deck."""
         with start.reading("the model") as stream:
-            told = {name: {column: values(array) for column, array in sorted(table.items(), key=order_of)}
+            reported = {name: {column: values(array) for column, array in sorted(table.items(), key=order_of)}
                     for name, table in stream["model"].items()}
-        self.title = told["deck"]["title"][0]
-        self.is_axisymmetric = bool(told["deck"]["axisymmetric"][0])
+        self.title = tables["deck"]["title"][0]
+        self.is_axisymmetric = bool(tables["deck"]["axisymmetric"][0])
         self.warnings = list(warnings)
         self.node_ids = start.point_field("node_id")[0].astype(int)
         self.points = start.points[0][:, :2]
@@ -146,25 +146,25 @@ class Model:
         self._order = np.argsort(self.node_ids, kind="stable")
         self.cells = start.cells
         self.cell_parts = start.cell_field("part_id")[0].astype(int)
-        curves = told.get("curves", {"curve": np.zeros(0), "x": np.zeros(0), "y": np.zeros(0)})
+        curves = tables.get("curves", {"curve": np.zeros(0), "x": np.zeros(0), "y": np.zeros(0)})
         self.curves = {number: np.stack([curves["x"], curves["y"]], axis=1)[curves["curve"] == number]
                        for number in np.unique(curves["curve"]).tolist()}
-        held = {row["part"]: row for row in rows(told, "rigid_bodies")}
-        self.parts = {row["id"]: self._part(row, held.get(row["id"])) for row in rows(told, "parts")}
+        held = {row["part"]: row for row in rows(tables, "rigid_bodies")}
+        self.parts = {row["id"]: self._part(row, held.get(row["id"])) for row in rows(tables, "parts")}
         self.node_sets = {row["id"]: NodeSet(row["id"], row["title"], self.indices(nodes)) for row, nodes in zip(
-            rows(told, "node_sets", "node"), pieces(told, "node_sets", "n_node"))}
+            rows(tables, "node_sets", "node"), pieces(tables, "node_sets", "n_node"))}
         self.interfaces = [Interface(row["id"], row["title"], row["type"], row["formulation"], row["friction"], row["sliding_friction"],
                                      *(Surface(segments) for segments in np.split(
                                          self.indices(nodes).reshape(-1, 2), [row["n_slave"]])))
-                           for row, nodes in zip(rows(told, "interfaces", "node"), pieces(told, "interfaces", "n_slave", "n_master"))]
+                           for row, nodes in zip(rows(tables, "interfaces", "node"), pieces(tables, "interfaces", "n_slave", "n_master"))]
         self.walls = [Wall(row["id"], np.array([row["x"], row["y"]]), np.array([row["normal_x"], row["normal_y"]]), row["friction"])
-                      for row in rows(told, "walls")]
-        self.history_nodes = self.indices(told.get("history_nodes", {}).get("node", ())).tolist()
+                      for row in rows(tables, "walls")]
+        self.history_nodes = self.indices(tables.get("history_nodes", {}).get("node", ())).tolist()
         self.fixed = np.zeros((len(self.points), 2), dtype=bool)
-        for row in rows(told, "fixed"):
+        for row in rows(tables, "fixed"):
             self.fixed[self.index(row["node"]), row["direction"] - 1] = True
-        self.arrows = self._arrows(told)
-        self.not_drawn = [words for name, words in NOT_DRAWN.items() if name in told]
+        self.arrows = self._arrows(tables)
+        self.not_drawn = [words for name, words in NOT_DRAWN.items() if name in reported]
 
     def indices(self, nodes: typing.Sequence[int]) -> np.ndarray:
         """Indices of nodes by their numbers."""
@@ -197,12 +197,12 @@ class Model:
         return Part(**row, n_element=int(np.sum(self.cell_parts == row["id"])), is_rigid=held is not None,
                     held=(bool(body["held_x"]), bool(body["held_y"])), turn_held=bool(body["held_turn"]))
 
-    def _arrows(self, told: dict) -> list[Arrows]:
+    def _arrows(self, tables: dict) -> list[Arrows]:
         """Prescribed motions and loads; those with one curve, factor and direction together."""
         found = []
         for name, kind, column in (("motions", "motion", "node"), ("body_motions", "motion", "part"),
                                    ("nodal_loads", "load", "node"), ("rigid_loads", "load", "part")):
-            for (direction, *quantity, curve, scale), members in groups(told.get(name, {}), column):
+            for (direction, *quantity, curve, scale), members in groups(tables.get(name, {}), column):
                 size = self.peak(curve, scale)
                 what = f"{QUANTITIES[quantity[0]]} of" if quantity else "load on"
                 on = (f"part {', '.join(map(str, members))}" if column == "part" else
@@ -212,7 +212,7 @@ class Model:
                 places = (self.points[self.indices(members)] if column == "node"
                           else np.array([self.centre(part) for part in members]))
                 found.append(Arrows(kind, label, places, along(direction, size, len(places))))
-        edges = dict(told.get("pressures", {"first": (), "second": ()}))
+        edges = dict(tables.get("pressures", {"first": (), "second": ()}))
         edges["edge"] = list(zip(edges.pop("first"), edges.pop("second")))
         for (curve, scale), pairs in groups(edges, "edge"):
             size = self.peak(curve, scale)
@@ -220,7 +220,7 @@ class Model:
             label = f"pressure on {counted(len(pairs), 'segment')}, curve {curve}, peak {size:.4g}"
             found.append(Arrows("pressure", label, self.points[segments].mean(axis=1),
                                 -size * Surface(segments).normals(self.points)))
-        for (direction, curve, scale), _ in groups(told.get("body_loads", {})):
+        for (direction, curve, scale), _ in groups(tables.get("body_loads", {})):
             size = -self.peak(curve, scale)  # bodies feel minus the base acceleration
             label = f"body load in {DIRECTIONS[direction]}, curve {curve}, acceleration {size:.4g}"
             middle = 0.5 * (self.points.min(axis=0) + self.points.max(axis=0))
@@ -249,20 +249,20 @@ def values(array: h5py.Dataset) -> typing.Any:
     return array[()]
 
 
-def rows(told: dict, table: str, *others: str) -> list[dict]:
+def rows(tables: dict, table: str, *others: str) -> list[dict]:
     """The rows of a table, by its columns but for some that have other lengths; none where there is no table."""
-    columns = {name: column if isinstance(column, list) else column.tolist() for name, column in told.get(table, {}).items()
+    columns = {name: column if isinstance(column, list) else column.tolist() for name, column in tables.get(table, {}).items()
                if name not in others}
     return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
 
-def pieces(told: dict, table: str, *counts: str) -> list[np.ndarray]:
+def pieces(tables: dict, table: str, *counts: str) -> list[np.ndarray]:
     """The column `node` of a table, cut into the pieces of its rows: as many nodes as the column n_node says, or two for
     each segment."""
-    if table not in told:
+    if table not in tables:
         return []
-    each = sum(told[table][name] for name in counts) * (1 if counts == ("n_node",) else 2)
-    return np.split(told[table].get("node", np.zeros(0, dtype=int)), np.cumsum(each)[:-1])
+    each = sum(tables[table][name] for name in counts) * (1 if counts == ("n_node",) else 2)
+    return np.split(tables[table].get("node", np.zeros(0, dtype=int)), np.cumsum(each)[:-1])
 
 
 def groups(columns: dict[str, list], member: str = "") -> list[tuple[tuple, list]]:
@@ -297,7 +297,7 @@ def check_deck(deck: str | os.PathLike, program: str | os.PathLike, overrides: t
         path = pathlib.Path(folder, "model.start.vtkhdf")
         if not path.exists():
             raise ModelError(f"{deck} was refused by {program}:\n{done.stderr.strip()}")
-        # What can be read may still not start: that is told with the warnings.
+        # What can be read may still not start: that is reported with the warnings.
         return Model(read(path), [("" if one["severity"] == "warning" else "it would not run: ") + one["message"]
                                   for one in answer["findings"]])
 

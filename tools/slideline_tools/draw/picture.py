@@ -2,7 +2,7 @@
 """The picture of a model: parts, sets, surfaces, conditions, velocities and loads, with a legend.
 
 Symbols and arrows have their size on paper, whatever the size of the model. Long rows of
-symbols are thinned out to what can be told apart.
+symbols are thinned out to what can be distinguished.
 """
 from __future__ import annotations
 

@@ -98,9 +98,9 @@ class Gathered(Run):
     @property
     def title(self) -> str:
         """Title of the deck, or the name of the job."""
-        return self.told("title") or (self.model.title if self.model else "") or self.job
+        return self.attribute("title") or (self.model.title if self.model else "") or self.job
 
-    def told(self, name: str) -> str:
+    def attribute(self, name: str) -> str:
         """What the results file or the log says of `title`, `deck`, `version`, `options`, `build`,
         `source` and (the results file alone) `machine`; '' where nothing does."""
         if self.results is not None and self.results.run.get(name):
@@ -146,8 +146,8 @@ def read_ending(log_text: str, tables: dict[str, History], results: Results | No
         time = float(results.times[-1])
     if timing is not None and "total" in timing["phase"]:
         seconds = float(timing["seconds"][timing["phase"] == "total"][0])
-    told = "no end in the log" if log_text else "the log is empty or missing"
-    return Ending("unfinished", f"{told}: the run was killed, or it still runs", time, cycle,
+    reported = "no end in the log" if log_text else "the log is empty or missing"
+    return Ending("unfinished", f"{reported}: the run was killed, or it still runs", time, cycle,
                   seconds)
 
 

@@ -57,7 +57,7 @@ def all_sections(run: Gathered, names: list[str], states: list[str], scale: floa
 
 def summary(run: Gathered) -> list[Block]:
     """Which run this is, on which machine, and how it ended."""
-    end, results, options, build = run.ending, run.results, run.told("options"), run.told("build")
+    end, results, options, build = run.ending, run.results, run.attribute("options"), run.attribute("build")
     threads = re.findall(r"ncpu=(\d+)", options)
     stamps = [time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(stamp)) for stamp in
               sorted(os.stat(run.path(ending)).st_mtime for ending in run.sizes)]
@@ -65,10 +65,10 @@ def summary(run: Gathered) -> list[Block]:
             f"{len(run.model.parts)} parts" if run.model
             else f"{figures(results.n_node)} nodes, {figures(results.n_cell)} elements" if results
             else "")
-    rows = [["title", run.title], ["deck", run.told("deck")], ["command line", options],
-            ["program", f"slideline {run.told('version')}" + (f" ({build})" if build else "")],
-            ["source", run.told("source")],
-            ["machine", run.told("machine") or "unknown: only the results file names it"],
+    rows = [["title", run.title], ["deck", run.attribute("deck")], ["command line", options],
+            ["program", f"slideline {run.attribute('version')}" + (f" ({build})" if build else "")],
+            ["source", run.attribute("source")],
+            ["machine", run.attribute("machine") or "unknown: only the results file names it"],
             ["threads", threads[-1] if threads else "1" if options else ""],
             ["ended", KINDS[end.kind] + (f": {end.reason}" if end.reason else "")],
             ["mesh", mesh],
@@ -398,7 +398,7 @@ def timing(run: Gathered) -> list[Block]:
 
 
 def advice(run: Gathered) -> list[Block]:
-    """What the run did not need, where that can be told (see the command advise)."""
+    """What the run did not need, where that can be known (see the command advise)."""
     if run.ending.kind != "normal" or run.timing is None:
         return []
     try:

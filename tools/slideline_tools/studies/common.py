@@ -31,7 +31,7 @@ def colour(ctype):
 
 
 def marker(ctype):
-    """Its marker, where points of types are told apart by shape too."""
+    """Its marker, where points of types are distinguished by shape too."""
     return LOOKS[ctype][1]
 
 

@@ -94,8 +94,8 @@ def program_source(program=None):
         done = subprocess.run([program, "--version"], capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
-    told = re.search(r"\(source (\S+)\)", done.stdout)
-    return told[1] if told else "unknown"
+    reported = re.search(r"\(source (\S+)\)", done.stdout)
+    return reported[1] if reported else "unknown"
 
 
 def with_origin(name, text, source=None, processors=None):

@@ -136,8 +136,8 @@ def reason(status, path):
     if status <= 0:
         return f"killed by {signal.Signals(-status).name}" if status else ""
     lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    told = [line.strip() for line in lines if line.strip() and not line.startswith("warning")]
-    return told[0][:200] if told else f"exit status {status}"
+    reported = [line.strip() for line in lines if line.strip() and not line.startswith("warning")]
+    return reported[0][:200] if reported else f"exit status {status}"
 
 
 def die_with_parent():

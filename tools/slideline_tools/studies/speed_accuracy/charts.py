@@ -21,8 +21,8 @@ def draw_type(axes, rows, cost, ctype):
     """Points of one series from mesh to mesh; hollow where the reference does not resolve them."""
     error = rows["error"].clip(lower=LOWEST)
     axes.plot(rows[cost], error, color=colour(ctype), linewidth=0.7, alpha=0.8)
-    for told, face in ((True, colour(ctype)), (False, "white")):
-        chosen = rows["resolved"] == told
+    for reported, face in ((True, colour(ctype)), (False, "white")):
+        chosen = rows["resolved"] == reported
         axes.plot(rows[cost][chosen], error[chosen], linestyle="none", marker=marker(ctype),
                   color=colour(ctype), markersize=4.5, markerfacecolor=face)
 

@@ -88,9 +88,9 @@ def measure(job, folder):
     found = {name: re.search(pattern, log) for name, pattern in IN_LOG.items()}
     if not all(found.values()):
         raise UserError("no limits in the log")
-    told = {name: float(match.group(1)) for name, match in found.items()}
-    return {"penalty": told["penalty"], "element_limit": told["element_limit"],
-            "program_limit": told["joint"] / told["element_limit"]}
+    reported = {name: float(match.group(1)) for name, match in found.items()}
+    return {"penalty": reported["penalty"], "element_limit": reported["element_limit"],
+            "program_limit": reported["joint"] / reported["element_limit"]}
 
 
 def derive(table, folder):
