@@ -135,7 +135,7 @@ class Model:
     def __init__(self, start: Results, warnings: typing.Iterable[str] = ()) -> None:
         """`start`: the file of the state at time zero; `warnings`: what the program said of the deck."""
         with start.reading("the model") as stream:
-            reported = {name: {column: values(array) for column, array in sorted(table.items(), key=order_of)}
+            tables = {name: {column: values(array) for column, array in sorted(table.items(), key=order_of)}
                     for name, table in stream["model"].items()}
         self.title = tables["deck"]["title"][0]
         self.is_axisymmetric = bool(tables["deck"]["axisymmetric"][0])
@@ -164,7 +164,7 @@ class Model:
         for row in rows(tables, "fixed"):
             self.fixed[self.index(row["node"]), row["direction"] - 1] = True
         self.arrows = self._arrows(tables)
-        self.not_drawn = [words for name, words in NOT_DRAWN.items() if name in reported]
+        self.not_drawn = [words for name, words in NOT_DRAWN.items() if name in tables]
 
     def indices(self, nodes: typing.Sequence[int]) -> np.ndarray:
         """Indices of nodes by their numbers."""
