@@ -372,9 +372,9 @@ contains
     end do
     warned = n > 0
     if (warned) call warn(log, 'node '//to_text(model%mesh%node_id(last)) &
-      //' has crossed the axis (radius '//to_text(least)//'; nodes beyond it: '//to_text(n)//') at ' &
-      //'cycle '//to_text(state%cycle)//', time '//to_text(state%time)//': results are invalid ' &
-      //'from here on')
+      //' has crossed the axis (radius '//to_text(least)//'; nodes beyond it: '//to_text(n)//') ' &
+      //'at cycle '//to_text(state%cycle)//', time '//to_text(state%time)//': results are ' &
+      //'invalid from here on')
   end subroutine check_radii
 
   !> Reference energy: largest of initial energy, external work and internal energy, J/m.
