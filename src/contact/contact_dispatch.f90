@@ -64,7 +64,7 @@ module contact_dispatch_m
       covers_segments=.true., has_nodal_pressure=.true., points_per_slave=2, &
       points_per_master=2)]
 
-  !> The same as the deck layer wants them.
+  !> Numbers, names and features of all types, for the deck reader.
   type(contact_kind_t), parameter :: contact_kinds(*) = formulations%kind
 
 contains

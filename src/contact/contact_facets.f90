@@ -124,7 +124,7 @@ contains
       end do
       ! That of the arcs: what facets add is no measure of itself.
       deepest = max(deepest, off - points%gap(p))
-      ! Of a facet that turns by more, nobody knows by how much it is off.
+      ! A facet that turns by more may be off by the whole height.
       if (any(meets_corner .and. product(weights, 1) > at_node)) off = maxval(height)
       estimate%facet_error = max(estimate%facet_error, abs(off))
       k = maxloc(height, 1)

@@ -17,7 +17,7 @@ module contact_log_m
   implicit none
   private
   public :: log_contact, penalty_text, report_initial_contact, report_tie_step, report_end, &
-    log_softness
+    log_compliance
 
   !> Part of the search reach below which a penetration at time zero is round-off, that of
   !> coordinates written with some eight digits included.
@@ -37,7 +37,8 @@ module contact_log_m
 
 contains
 
-  !> Type, surfaces, all equivalents of the penalty and what the search will catch.
+  !> Log type, surfaces, all equivalents of the penalty, and the deepest first contact that is
+  !> activated.
   subroutine log_contact(contact, model, memory, log)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -163,8 +164,8 @@ contains
       //in_units(model%controls%units, 'L')
   end function surface_text
 
-  !> How much is tied, and which slave nodes have nothing within reach. That is a warning where the
-  !> surface was given node by node; whole outlines have far sides.
+  !> Log the extent of a tie, and warn of slave nodes without a master segment within the search
+  !> radius where the surface is a node set; closed boundaries have far sides.
   subroutine log_ties(contact, model, memory, log)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -225,7 +226,7 @@ contains
 
   !> Compliance of the springs over that of the elements at both surfaces (bulk modulus; rigid ones
   !> have none), and a warning of an absolute penalty that is far too soft.
-  subroutine log_softness(contact, model, memory, log, softness)
+  subroutine log_compliance(contact, model, memory, log, softness)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(in) :: memory
@@ -251,7 +252,7 @@ contains
       //to_text(contact%penalty)//' with PUNIT '//to_text(contact%penalty_unit)//' (0 where ' &
       //'blank) is '//to_text(softness)//' times as soft as the elements at the surfaces: bodies ' &
       //'penetrate each other; PEN 1 with PUNIT 2 is the built-in estimate')
-  end subroutine log_softness
+  end subroutine log_compliance
 
   !> Compliance of the elements at a surface under a pressure: A/(K L), m^2/N.
   pure function row_compliance(surface, model) result(compliance)

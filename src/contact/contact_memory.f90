@@ -19,7 +19,7 @@ module contact_memory_m
   use law_state_m, only : friction_memory_t, allocate_limit, allocate_friction, &
     allocate_interference
   use model_m, only : model_t
-  use points_mortar_m, only : has_folds
+  use points_mortar_m, only : resolves_vertices
   use positions_m, only : start_segment_points, points_at_nodes
   use surfaces_m, only : surface_t
   implicit none
@@ -61,7 +61,7 @@ contains
     call set_penalties(contact, model, formulation%self_share, memory)
     if (memory%has%contact .and. contact%largest_turn > 0.0_wp) call prepare_arcs(contact, memory)
     call start_segment_points(formulation%segment_points, contact%n_gauss, &
-      contact%is_axisymmetric, has_folds(contact), contact%slave, memory%positions, &
+      contact%is_axisymmetric, resolves_vertices(contact), contact%slave, memory%positions, &
       memory%segment_points)
     call allocate_slave_status(contact, model, memory)
     if (formulation%has_two_passes) call allocate_master_status(contact, model, memory)

@@ -61,7 +61,7 @@ module contact_step_limit_m
   real(wp), parameter :: beyond_ends = 0.5_wp
 
   !> Most rounds over all interfaces, and how far sides may be loaded unlike after them: any c is
-  !> safe, more rounds only sharpen the bound.
+  !> safe, more rounds only raise the bound.
   integer, parameter :: n_round = 40
   real(wp), parameter :: even = 1.0e-6_wp
   !> The c, or 1/c, of an interface of which one side alone has springs.
@@ -422,7 +422,7 @@ contains
       opening_step(bound)/dt)**2
   end function fitting_scale
 
-  !> Its components.
+  !> Visit the components of the bound of an interface.
   subroutine visit_springs(self, visitor)
     class(spring_bound_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

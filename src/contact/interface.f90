@@ -42,7 +42,7 @@ module interface_m
 
 contains
 
-  !> Set up the memory of one interface at time zero and tell the log what was understood.
+  !> Set up the memory of one interface at time zero and write the log.
   subroutine start_contact(contact, model, log, memory, inside_tests)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model

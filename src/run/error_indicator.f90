@@ -56,11 +56,11 @@ contains
     allocate (others(2*size(model%contacts)))
     if (rows%are_shared) call find_other_pressures(model, state, snapshot%slaves, others)
     do i = 1, size(model%contacts)
-      contact = state%outlines(i)
+      contact = state%interfaces(i)
       ! The common step limit of interfaces that share nodes is too expensive for every row.
       if (.not. model%controls%implicit%is_on) then
         scale = merge(0.0_wp, 1.0_wp, model%contacts(i)%penalty_unit == penalty_implicit)
-        call bound_springs(state%outlines(i:i), state%contact_mass, state%contacts(i:i), scale, &
+        call bound_springs(state%interfaces(i:i), state%contact_mass, state%contacts(i:i), scale, &
           bound)
         snapshot%interfaces(i)%step_limit = stable_step(element_limit, bound(1))
       end if
@@ -182,7 +182,7 @@ contains
       if (.not. allocated(bodies)) call find_bodies(model, bodies)
       associate (contact => model%contacts(i), memory => state%contacts(i), &
         estimate => state%estimates(i))
-        call follow_arcs(state%outlines(i), memory, estimate)
+        call follow_arcs(state%interfaces(i), memory, estimate)
         if (state%cycle == 0) cycle
         estimate%bodies = max(estimate%bodies, sum(parts%internal, &
           of_bodies(bodies, parts_at_surfaces(model, contact))))

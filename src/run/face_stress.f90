@@ -315,10 +315,10 @@ contains
     integer :: i, k, m, s
 
     do i = 1, size(others)/2
-      surfaces(2*i - 1) = state%outlines(i)%slave
-      surfaces(2*i) = state%outlines(i)%master
+      surfaces(2*i - 1) = state%interfaces(i)%slave
+      surfaces(2*i) = state%interfaces(i)%master
       ! Self contact has slave nodes only.
-      if (state%outlines(i)%is_self) surfaces(2*i)%n_segment = 0
+      if (state%interfaces(i)%is_self) surfaces(2*i)%n_segment = 0
     end do
     allocate (faces(sum(surfaces%n_segment)), next(sum(surfaces%n_segment)))
     allocate (first(model%mesh%n_node), source=0)

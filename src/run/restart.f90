@@ -199,7 +199,7 @@ contains
       'a time after that of the relaxation')
     end associate
     do i = 1, size(state%contacts)
-    call check_contact(state%outlines(i), state%contacts(i), &
+    call check_contact(state%interfaces(i), state%contacts(i), &
       'state/contacts/'//to_text(i)//'/', archive)
     end do
   end subroutine check_state

@@ -373,7 +373,7 @@ contains
     do i = 1, size(model%contacts)
       ! Erosion may have changed its nodes.
       if (model%erodes) snapshot%slaves(i) = slave_result_t()
-      call slave_rows(state%outlines(i), state%motion, state%contacts(i), snapshot%slaves(i))
+      call slave_rows(state%interfaces(i), state%motion, state%contacts(i), snapshot%slaves(i))
     end do
   end subroutine fill_slaves
 

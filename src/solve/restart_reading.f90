@@ -12,7 +12,7 @@ module restart_reading_m
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use history_file_m, only : plan_histories
-  use element_erosion_m, only : restore_outlines
+  use element_erosion_m, only : restore_interfaces
   use monitor_m, only : monitor_t, start_schedules, output_reach
   use progress_m, only : show_note
   use restart_file_m, only : open_restart
@@ -90,7 +90,7 @@ contains
       call source%leave()
       call source%leave()
       call source%leave()
-      if (.not. allocated(source%error)) call restore_outlines(model, state)
+      if (.not. allocated(source%error)) call restore_interfaces(model, state)
     end if
     if (present(remote)) source%releases = remote_releases(remote)
     if (.not. allocated(source%error)) call source%part('state', state)

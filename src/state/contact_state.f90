@@ -157,7 +157,7 @@ module contact_state_m
     type(contact_monitor_t) :: monitor      !! whether the springs give back what they take
     type(energy_limit_t) :: limit           !! that they give back no more
     integer :: n_active = 0                 !! points of contact that carry pressure
-    logical :: rules_step = .false.         !! the step obeys the springs, which nobody has chosen
+    logical :: rules_step = .false.         !! default penalty and step: the step obeys the springs
     type(contact_scratch_t) :: scratch
   contains
     procedure :: visit => visit_contact
@@ -301,7 +301,7 @@ contains
     end if
   end function site_at
 
-  !> Its components.
+  !> Visit the components of a list of contact points.
   subroutine visit_points(self, visitor)
     class(contact_points_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -324,7 +324,7 @@ contains
       'values where the deck has no friction and no tie, or none where it has')
   end subroutine visit_points
 
-  !> Its components.
+  !> Visit the components of the state of an interface.
   subroutine visit_contact(self, visitor)
     class(contact_state_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

@@ -10,8 +10,8 @@ module law_state_m
   private
   public :: friction_memory_t, allocate_friction, is_open, sticks, slips, is_held, is_broken, &
     is_beside, interference_memory_t, allocate_interference, tie_memory_t, allocate_ties, &
-    energy_limit_t, allocate_limit, spring_t, contact_monitor_t, contact_change_t, has_made, &
-    has_lost, contact_estimate_t
+    energy_limit_t, allocate_limit, spring_t, contact_monitor_t, contact_change_t, energy_created, &
+    energy_lost, contact_estimate_t
 
   !> What a site is doing.
   integer, parameter :: is_open = 0, sticks = 1, slips = 2
@@ -82,31 +82,31 @@ module law_state_m
                                       !! contact meets, 0 where the motion is held, m/kg
     real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) of the last call with force
     real(wp) :: recoil = 0.0_wp       !! sum of F.F/m of the last call, N^2/kg
-    real(wp) :: admissible = 0.0_wp   !! what springs held that were born or caught loaded, J/m
-    real(wp) :: admitted = 0.0_wp     !! the part of it of those that were caught, J/m
-    real(wp) :: entry_allowance = 0.0_wp !! most that may be lent, J/m
-    real(wp) :: largest = 0.0_wp      !! largest energy of the springs so far, credit included, J/m
+    real(wp) :: admissible = 0.0_wp   !! energy of springs that were activated under load, J/m
+    real(wp) :: admitted = 0.0_wp     !! its part by entries after the start, J/m
+    real(wp) :: entry_allowance = 0.0_wp !! most of it by one interface, J/m
+    real(wp) :: largest = 0.0_wp      !! largest energy of springs so far, admissible included, J/m
     integer :: n_loaded = 0           !! cycles with force
     integer :: n_limited = 0          !! cycles whose forces were scaled down
     real(wp) :: least_factor = 1.0_wp !! of all cycles
     real(wp) :: least_time = 0.0_wp   !! of that factor, s
-    real(wp) :: withheld = 0.0_wp     !! most that springs held beyond what they were given, J/m
-    logical :: warned = .false.       !! the log tells that this is much
+    real(wp) :: withheld = 0.0_wp     !! most stored beyond received and admissible energy, J/m
+    logical :: warned = .false.       !! the log has the warning
   contains
     procedure :: visit => visit_limit
   end type energy_limit_t
 
   !> Signs of the balance, as sites in arrays of two.
-  integer, parameter :: has_made = 1, has_lost = 2
+  integer, parameter :: energy_created = 1, energy_lost = 2
   character(*), parameter :: no_node = 'a number that no node has'
 
-  !> The largest change of the balance of one sign between two looks, and whether the log has told
-  !> of that sign.
+  !> The largest change of the balance of one sign between two samples, and whether the log has a
+  !> warning of that sign.
   type, extends(visited_t) :: contact_change_t
     real(wp) :: amount = 0.0_wp   !! J/m
     integer :: node = 0           !! most loaded then, by index in the mesh; 0: none yet
     real(wp) :: position(2) = 0.0_wp !! where that node was, m
-    real(wp) :: time = 0.0_wp     !! of the second of the two looks, s
+    real(wp) :: time = 0.0_wp     !! of the second sample, s
     logical :: warned = .false.
   contains
     procedure :: visit => visit_change
@@ -120,9 +120,9 @@ module law_state_m
     real(wp) :: load    !! N/m
   end type spring_t
 
-  !> Filled when the springs are looked at, now and then.
+  !> Sample of the springs every few cycles.
   type, extends(visited_t) :: contact_monitor_t
-    logical :: is_due = .false.       !! the next call looks at the springs
+    logical :: is_due = .false.       !! the next call samples the springs
     logical :: has_sampled = .false.  !! the last call did, or found that contact has opened
     real(wp) :: stored = 0.0_wp       !! potential of the springs then, J/m
     real(wp) :: load = 0.0_wp         !! largest force of a point then, N/m
@@ -177,7 +177,7 @@ contains
     allocate (friction%state(n_site), source=is_open)
   end subroutine allocate_friction
 
-  !> Its components.
+  !> Visit the components of the friction state.
   subroutine visit_friction(self, visitor)
     class(friction_memory_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -199,7 +199,7 @@ contains
     interference%depth(n_site - n_master + 1:) = -1.0_wp
   end subroutine allocate_interference
 
-  !> Its components.
+  !> Visit the components of the interference state.
   subroutine visit_interference(self, visitor)
     class(interference_memory_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -224,7 +224,7 @@ contains
       ties%force(2, n_node), source=0.0_wp)
   end subroutine allocate_ties
 
-  !> Its components.
+  !> Visit the components of the state of ties.
   subroutine visit_ties(self, visitor)
     class(tie_memory_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -256,7 +256,7 @@ contains
     allocate (limit%inverse_mass(2, n), limit%velocity(2, n), source=0.0_wp)
   end subroutine allocate_limit
 
-  !> Its components.
+  !> Visit the components of the energy limit.
   subroutine visit_limit(self, visitor)
     class(energy_limit_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -277,7 +277,7 @@ contains
     call visitor%visit('warned', self%warned)
   end subroutine visit_limit
 
-  !> Its components.
+  !> Visit the components of a change of the balance.
   subroutine visit_change(self, visitor)
     class(contact_change_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -289,7 +289,7 @@ contains
     call visitor%visit('warned', self%warned)
   end subroutine visit_change
 
-  !> Its components.
+  !> Visit the components of the sample of springs.
   subroutine visit_monitor(self, visitor)
     class(contact_monitor_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -303,7 +303,7 @@ contains
     call visitor%each('changes', self%changes)
   end subroutine visit_monitor
 
-  !> Its components.
+  !> Visit the components of the error estimate.
   subroutine visit_estimate(self, visitor)
     class(contact_estimate_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

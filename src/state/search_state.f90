@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> What the search of an interface remembers: candidate pairs, status of points over the segments of
+!> State of the search of an interface: candidate pairs, status of points over the segments of
 !> the other surface and of slave segments, points at fixed positions of segments.
 !>
-!> Contact is looked for among candidate pairs alone: master segments near each slave segment. A
+!> Contact is searched among candidate pairs alone: master segments near each slave segment. A
 !> separated point at distance d from all of its candidates is skipped until `travel` has grown by
 !> d: the sum over all steps of a bound on how far any two nodes of the interface have moved
 !> relative to each other.
@@ -50,7 +50,7 @@ module search_state_m
     real(wp) :: earliest_search = -huge(1.0_wp) !! travel before which no separated point can touch
     real(wp) :: reach = 0.0_wp               !! search radius: points farther away are unpaired, m
     integer, allocatable :: active_points(:) !! (n) the first n_active: active points, in order
-    integer, allocatable :: due(:)           !! (n) scratch: points to be looked at one by one
+    integer, allocatable :: due(:)           !! (n) scratch: points to be searched one by one
     integer, allocatable :: segment(:)       !! (n) active: its segment; else the closest, 0 = none
     integer, allocatable :: state(:)         !! (n) separated or active
     real(wp), allocatable :: xi(:)           !! (n) 0 to 1 along the segment (a little more at ends)
@@ -133,7 +133,7 @@ contains
     end do
   end function segment_point_at
 
-  !> Its components; extremes are found again.
+  !> Visit the components of the status; extremes are found again.
   subroutine visit_status(self, visitor)
     class(contact_status_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -158,7 +158,7 @@ contains
     call visitor%visit('shallowest', self%shallowest)
   end subroutine visit_status
 
-  !> Its components.
+  !> Visit the components of the points at fixed positions of segments.
   subroutine visit_segment_points(self, visitor)
     class(segment_points_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -169,7 +169,7 @@ contains
     call visitor%visit('spread', self%spread)
   end subroutine visit_segment_points
 
-  !> Its components.
+  !> Visit the components of the status of slave segments.
   subroutine visit_segments(self, visitor)
     class(segment_status_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

@@ -80,7 +80,7 @@ module state_m
     type(contact_state_t), allocatable :: contacts(:)
     type(contact_estimate_t), allocatable :: estimates(:) !! error estimates of the interfaces of
                                                           !! the deck
-    type(contact_t), allocatable :: outlines(:) !! interfaces with their current surfaces, without
+    type(contact_t), allocatable :: interfaces(:) !! interfaces with their current surfaces, without
                                                 !! eroded elements
     type(rigid_state_t), allocatable :: rigids(:)
     type(wall_state_t), allocatable :: walls(:) !! allocated where the deck has rigid walls

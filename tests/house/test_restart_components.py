@@ -11,7 +11,7 @@ EACH_CYCLE = "made, asked or found anew in each cycle"
 #: type -> {component: why its `visit` does not name it}
 EXEMPT = {
     "state_t": {"boundary_since": "of this run, where the file has no works",
-                "outlines": "made of the deck and the status of elements"},
+                "interfaces": "made of the deck and the status of elements"},
     "block_state_t": {"mass_shares": "made of the deck and the status of elements"},
     "contact_state_t": {"has": OF_THE_DECK, "scratch": "nothing in it lasts to the next step",
                         "candidates": "no result depends on them", "reversed": "no result depends on them",

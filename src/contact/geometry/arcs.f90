@@ -19,7 +19,7 @@ module arcs_m
   real(wp), parameter :: flat = 0.1_wp
   !> Sine of the turn up to which two segments are straight: inclined lines have some by round-off.
   real(wp), parameter :: straight = 1.0e-6_wp
-  !> The same below which the end is where a line meets the arc: the surface turns by half there.
+  !> Ratio of turns below which a line meets the arc at that end: the surface turns by half there.
   real(wp), parameter :: tangent = 0.75_wp
   !> Largest sine of the angle between an arc and its secant.
   real(wp), parameter :: steepest = 0.9_wp
@@ -72,7 +72,7 @@ contains
 
   contains
 
-    !> Heights where the points of a surface are looked for.
+    !> Heights of arcs, within which the points of a surface are searched.
     pure subroutine start_pass(own, other, before_own, before_other, pass)
       type(surface_t), intent(in) :: own, other
       integer, intent(in) :: before_own, before_other !! local numbers before their first nodes
@@ -318,7 +318,7 @@ contains
     above = across + (off(1)*normal(1) + off(2)*normal(2))
     xi = ((d(1) + off(1))*unit(1) + (d(2) + off(2))*unit(2))/length
     call find_height(shape, xi, height, sine)
-    way = way_to_foot(shape, xi, (above/length - height)*sqrt(1.0_wp - sine**2), sine)
+    way = way_to_projection(shape, xi, (above/length - height)*sqrt(1.0_wp - sine**2), sine)
     call find_height(shape, xi + way, height, sine)
     cosine = sqrt(1.0_wp - sine**2)
     projection%gap = (above - height*length)*cosine + way*length*sine
@@ -329,7 +329,7 @@ contains
 
   !> Newton step from above a place on an arc to the place whose normal goes through the point, as a
   !> part of the secant; no longer than for a point at half the radius of curvature.
-  pure function way_to_foot(shape, xi, gap, sine) result(way)
+  pure function way_to_projection(shape, xi, gap, sine) result(way)
     type(arc_shape_t), intent(in) :: shape
     real(wp), intent(in) :: xi, gap, sine !! gap as a part of the secant
     real(wp) :: way, fall
@@ -337,7 +337,7 @@ contains
     fall = shape%bend + 6.0_wp*shape%skew*(1.0_wp - 2.0_wp*xi)
     if (abs(xi - 0.5_wp) > 0.5_wp) fall = 0.0_wp
     way = gap*sine/max(0.5_wp, 1.0_wp + gap*fall)
-  end function way_to_foot
+  end function way_to_projection
 
   !> Let all points of an interface stand between arcs: gaps, normals and where forces act on the
   !> segments that have the normals. Points between flat segments keep their bits.
@@ -465,8 +465,8 @@ contains
     projection = project_on_arc(t, d, off, shape)
   end subroutine project_on_arcs
 
-  !> The same of the virtual node that a point of type 4 belongs to; xi is counted from its
-  !> projection on the secant.
+  !> Projection on arcs of the virtual node of a point of type 4; xi is counted from its projection
+  !> on the secant.
   pure subroutine project_virtual_node(contact, memory, points, p, projection, nodes, is_curved)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory

@@ -60,7 +60,7 @@ contains
       memory%master_penalty = master_value*estimate
     case (penalty_implicit)
       ! Below 0: no compliance, which 0 stands for. Rows of a rigid slave may depend on others, and
-      ! those of nodes that are held or led before a rigid master.
+      ! those of nodes that are fixed or prescribed before a rigid master.
       factor = max(0.0_wp, contact%penalty)
       if (.not. factor > 0.0_wp .and. (is_rigid(contact%slave, model) .or. (is_rigid( &
         contact%master, model) .and. is_held(contact%slave, model)))) factor = rigid_factor
@@ -82,7 +82,7 @@ contains
     is_rigid = any(of_body(surface%nodes))
   end function is_rigid
 
-  !> Whether nodes of a surface are held or led along x or y.
+  !> Whether nodes of a surface are fixed or prescribed along x or y.
   pure logical function is_held(surface, model)
     type(surface_t), intent(in) :: surface
     type(model_t), intent(in) :: model

@@ -32,8 +32,8 @@ module energy_limit_m
   !> Share of the largest energy so far that may be returned beyond what is stored: bodies that
   !> slide on each other exchange that much without harm.
   real(wp), parameter :: slack = 0.01_wp
-  !> Share of what holds the nodes back that is counted on in the half step to come: it is foretold
-  !> from the step before, and falls off where contact opens.
+  !> Share of what holds the nodes back that is counted on in the coming half step: it is
+  !> extrapolated from the previous step, and vanishes where contact opens.
   real(wp), parameter :: relied_on = 0.5_wp
 
 contains
@@ -81,7 +81,7 @@ contains
     spring = spring - part
   end subroutine subtract
 
-  !> The same without a copy before.
+  !> Forces without one of their parts, without a copy first.
   pure subroutine difference(n, force, part, spring)
     integer, intent(in) :: n
     real(wp), intent(in) :: force(n), part(n)

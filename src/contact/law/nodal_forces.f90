@@ -69,7 +69,7 @@ contains
       points%master_weights, points%normal, load, points%area, force)
   end subroutine scatter
 
-  !> The same on arrays of known shape: through the list each access costs a multiplication by its
+  !> Scatter on arrays of known shape: through the list each access costs a multiplication by its
   !> stride.
   pure subroutine scatter_each(n, slave_nodes, slave_weights, master_nodes, master_weights, &
       normal, load, area, force)
@@ -283,7 +283,7 @@ contains
     end do
   end subroutine clear_force
 
-  !> The same for forces that stay.
+  !> Power of nodal forces with the velocities of the nodes, W/m.
   pure function power_of(nodes, motion, force) result(power)
     integer, intent(in), contiguous :: nodes(:)
     real(wp), intent(in) :: motion(4, *)

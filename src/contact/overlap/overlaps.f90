@@ -53,7 +53,7 @@ contains
     n = max(n_between, 2*(candidates%first(s + 1) - candidates%first(s)) + 1)
   end function n_most_overlaps
 
-  !> The same for any of a range of them.
+  !> Room for the overlaps of any slave segment of a range.
   pure function room_for_overlaps(candidates, first, last) result(n)
     type(candidates_t), intent(in) :: candidates
     integer, intent(in) :: first, last
@@ -128,7 +128,7 @@ contains
 
   !> Clip master segments to the slave segment and keep those that have an overlap; candidates only
   !> where they may touch. A node in common to two that follow each other is projected once. Between
-  !> two active ends there are none where the surface folds.
+  !> two active ends there are none where the surface turns sharply.
   pure subroutine clip_masters(contact, memory, own, is_between, masters, overlaps, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory

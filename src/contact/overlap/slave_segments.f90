@@ -304,7 +304,7 @@ contains
     if (outer > 0) segment = outer
   end function segment_below
 
-  !> The same of an end that is not active, and where on the segment.
+  !> Master segment on which an inactive end of a slave segment has its projection, and where on it.
   pure subroutine search_below(contact, memory, s, node, segment, at)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -355,7 +355,7 @@ contains
       square = closest_distance(local)
       if (square >= least) cycle
       if (is_opposed) then
-        if (.not. looks_against(own, local%t)) cycle
+        if (.not. are_opposed(own, local%t)) cycle
       end if
       least = square
       closest = m
@@ -363,7 +363,7 @@ contains
   end function closest_candidate
 
   !> Whether two segments are opposed: their vectors have the cosine of their normals.
-  pure function looks_against(own, other) result(opposed)
+  pure function are_opposed(own, other) result(opposed)
     real(wp), intent(in) :: own(2), other(2) !! m
     logical :: opposed
     real(wp) :: product
@@ -371,7 +371,7 @@ contains
     product = own(1)*other(1) + own(2)*other(2)
     opposed = product < 0.0_wp .and. product*product > side_on**2*((own(1)*own(1) &
       + own(2)*own(2))*(other(1)*other(1) + other(2)*other(2)))
-  end function looks_against
+  end function are_opposed
 
   !> Whether a slave segment is opposed to the face that one of its ends is active on.
   pure function is_opposed_to_contact(status, own) result(opposed)

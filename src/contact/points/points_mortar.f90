@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Types 6 and 7, mortar and segmented mortar: Gauss points on each whole slave segment, or two on
 !> each overlap of a slave segment with a master segment; pressure from the slave nodes
-!> (doc/theory/contact.md, sections 5.6 and 5.7). Averages over a slave segment at the tip of a fold
-!> of a surface with itself: the tip comes first, and its flanks, which are still open, would hold
-!> it off the sum. There the points of the segment give their areas to its two nodes.
+!> (doc/theory/contact.md, sections 5.6 and 5.7). At a sharp vertex in self contact an average
+!> over a slave segment would be open although the vertex has penetrated: there the points of the
+!> segment shift their areas to its two nodes (nodal quadrature).
 module points_mortar_m
   use contact_state_m, only : contact_state_t, contact_points_t
   use search_state_m, only : active
@@ -21,7 +21,7 @@ module points_mortar_m
   implicit none
   private
   public :: points_mortar, finish_mortar, points_segmented_mortar, finish_segmented_mortar, &
-    gauss_xi, least_part, has_folds, find_sharp_vertices, belongs_to
+    gauss_xi, least_part, resolves_vertices, find_sharp_vertices, belongs_to
 
   !> Gauss points of an overlap.
   integer, parameter :: n_gauss = 2
@@ -61,7 +61,7 @@ contains
     type(contact_points_t), intent(inout) :: points
 
     if (memory%slave_status%n_active == 0) return
-    if (has_folds(contact)) call weight_sharp_vertices(contact, memory, points)
+    if (resolves_vertices(contact)) call weight_sharp_vertices(contact, memory, points)
   end subroutine finish_mortar
 
   !> A master segment below a point in contact on a slave segment or one next to it, 0: none.
@@ -172,13 +172,13 @@ contains
     call note_earliest_search(memory)
     n = points%n
     if (any(memory%segments%state == active) &
-      .or. (has_folds(contact) .and. memory%slave_status%n_active > 0)) then
+      .or. (resolves_vertices(contact) .and. memory%slave_status%n_active > 0)) then
       call points_at_neighbours(contact, memory, points)
       call finish_segment_points(memory%positions, contact%is_axisymmetric, n + 1, points)
     else
       points%n = 0
     end if
-    if (has_folds(contact)) call weight_sharp_vertices(contact, memory, points)
+    if (resolves_vertices(contact)) call weight_sharp_vertices(contact, memory, points)
   end subroutine finish_segmented_mortar
 
   !> Neighbours of segments in contact that have no points yet.
@@ -287,13 +287,13 @@ contains
     end associate
   end subroutine project_ambiguous
 
-  !> Whether sharp vertices count as such, where averages do: a surface in contact with itself.
-  elemental function has_folds(contact)
+  !> Whether sharp vertices have nodal quadrature: in self contact.
+  elemental function resolves_vertices(contact)
     type(contact_t), intent(in) :: contact
-    logical :: has_folds
+    logical :: resolves_vertices
 
-    has_folds = contact%is_self .and. .not. is_tied(contact)
-  end function has_folds
+    resolves_vertices = contact%is_self .and. .not. is_tied(contact)
+  end function resolves_vertices
 
   !> Let the points of segments at sharp vertices give their areas to their nodes: all points of a
   !> segment follow each other on the list.
@@ -320,8 +320,8 @@ contains
   end subroutine weight_sharp_vertices
 
   !> Whether a node of a surface in contact with itself is an end of the segment that it stands
-  !> upon, or, where it stands on a node of that, of the next segment there: on which of both a node
-  !> of a fold stands is a matter of round-off.
+  !> upon, or, where it stands on a node of that, of the next segment there: round-off decides on
+  !> which of both a node at a vertex stands.
   pure function belongs_to(surface, node, segment, xi) result(belongs)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: node, segment
@@ -335,7 +335,7 @@ contains
     if (beside > 0) belongs = belongs .or. any(surface%segments(:, beside) == node)
   end function belongs_to
 
-  !> How much gives way at each slave node, 0 to 1: kept where averages come later. In a trial of an
+  !> Share of nodal quadrature at each slave node, 0 to 1; kept for the averages. In a trial of an
   !> implicit step that of the start of the step, so that it is no part of the tangent.
   pure subroutine find_sharp_vertices(slave, memory)
     type(surface_t), intent(in) :: slave

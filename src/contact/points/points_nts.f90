@@ -97,8 +97,8 @@ contains
     call finish_segment_points(memory%positions, .false., n + 1, points)
   end subroutine points_nts_mar
 
-  !> Type 5: areas of the slave nodes, from the segments before and behind; nodes at a tip keep
-  !> their whole tributary length.
+  !> Type 5: areas of the slave nodes, from the segments before and behind; nodes at a sharp
+  !> vertex keep their whole tributary length.
   pure subroutine finish_nts_mar(contact, memory, points)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory

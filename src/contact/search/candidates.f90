@@ -367,25 +367,25 @@ contains
     last = contact%master%nodes(contact%master%segments(2, m))
     is = .true.
     if (own_last == first) then
-      is = folds(own, other)
+      is = turns_sharply(own, other)
     else if (own_first == last) then
-      is = folds(other, own)
+      is = turns_sharply(other, own)
     else
       is = own_first /= first .and. own_last /= last
     end if
   end function is_candidate
 
-  !> Whether a side folds upon itself from one segment to the next: they open towards each other by
-  !> less than 60 degrees.
-  pure function folds(one, two)
+  !> Whether two segments that follow each other form a sharp vertex: they open towards each other
+  !> by less than 60 degrees.
+  pure function turns_sharply(one, two)
     real(wp), intent(in) :: one(2), two(2) !! vectors of the segments, along the surface, m
-    logical :: folds
+    logical :: turns_sharply
 
-    folds = one(1)*two(2) - one(2)*two(1) < 0.0_wp .and. &
+    turns_sharply = one(1)*two(2) - one(2)*two(1) < 0.0_wp .and. &
       dot_product(one, two) < face_on*norm2(one)*norm2(two)
-  end function folds
+  end function turns_sharply
 
-  !> The same pairs by master segment.
+  !> Candidate pairs by master segment, from those by slave segment.
   pure subroutine reverse_pairs(n, candidates, reversed)
     integer, intent(in) :: n !! master segments
     type(candidates_t), intent(in) :: candidates

@@ -71,7 +71,7 @@ contains
             if (pairs%items(at) == pairs%items(j)) cycle
           end if
           associate (segment => pairs%items(j), ends => other%segments(:, pairs%items(j)))
-            ! A node of a side that folds upon itself belongs to the segment.
+            ! In self contact an end of the segment is on it.
             if (pass%is_self .and. pass%n_on_segment == 0 .and. any(ends == i)) cycle
             local = coordinates_on_segment(point, positions(:, pass%other_at + ends(1)), &
               positions(:, pass%other_at + ends(2)))

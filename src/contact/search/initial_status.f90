@@ -24,7 +24,7 @@ module initial_status_m
 
 contains
 
-  !> The points of the slave side before anything is looked for.
+  !> Status of the points of the slave side before the first search.
   subroutine allocate_slave_status(contact, model, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -47,7 +47,7 @@ contains
     end associate
   end subroutine allocate_slave_status
 
-  !> Master nodes of the second pass before anything is looked for.
+  !> Status of the master nodes of the second pass before the first search.
   subroutine allocate_master_status(contact, model, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model

@@ -155,8 +155,8 @@ contains
     end do
   end subroutine move_by_radius
 
-  !> The same on arrays of known shape. Both components of a point are formed together: vectors over
-  !> the few points of a segment take 2 to 4 % more of the contact of type 4.
+  !> Move points on segments, on arrays of known shape. Both components of a point are formed
+  !> together: vectors over the few points of a segment take 2 to 4 % more of the contact of type 4.
   pure subroutine move_on_segments(n, segments, n_xi, xi, positions, segment_points)
     integer, intent(in) :: n, segments(2, n), n_xi
     real(wp), intent(in) :: xi(n_xi), positions(4, *)

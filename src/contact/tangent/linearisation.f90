@@ -199,7 +199,7 @@ contains
     above = across + off(1)*normal(1) + off(2)*normal(2)
     xi = ((d(1) + off(1))*unit(1) + (d(2) + off(2))*unit(2))/length
     call find_height(bend, skew, xi, height, sine)
-    way = way_to_foot(bend, skew, xi, (above/length - height)*sqrt(1.0_wp - sine*sine), sine)
+    way = way_to_projection(bend, skew, xi, (above/length - height)*sqrt(1.0_wp - sine*sine), sine)
     call find_height(bend, skew, xi + way, height, sine)
     cosine = sqrt(1.0_wp - sine*sine)
     projection%gap = (above - height*length)*cosine + way*length*sine
@@ -278,7 +278,7 @@ contains
 
   !> Newton step from above a place on an arc to the place whose normal goes through the point
   !> (`arcs_m`).
-  pure function way_to_foot(bend, skew, xi, gap, sine) result(way)
+  pure function way_to_projection(bend, skew, xi, gap, sine) result(way)
     type(dual_t), intent(in) :: bend, skew, xi, gap, sine !! gap as a part of the secant
     type(dual_t) :: way, fall
 
@@ -287,7 +287,7 @@ contains
     fall = gap*fall + 1.0_wp
     if (fall%value < 0.5_wp) fall = constant(0.5_wp)
     way = gap*sine/fall
-  end function way_to_foot
+  end function way_to_projection
 
   !> Slip of a point in the step over the segment in slots 3, 4, m: L d(xi). Where slot 4 is not
   !> used the segment that has the normal is the slave's.

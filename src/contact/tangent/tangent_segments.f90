@@ -16,7 +16,7 @@ module tangent_segments_m
     cosine_between, share_of, side_share_of, radius_at
   use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
   use points_nts_m, only : is_sharp_vertex
-  use points_mortar_m, only : gauss_xi, least_part, has_folds
+  use points_mortar_m, only : gauss_xi, least_part, resolves_vertices
   use surfaces_m, only : surface_t
   use tangent_nodes_m, only : linearise_node, linearise_length
   use slave_segments_m, only : sides_part
@@ -26,7 +26,7 @@ module tangent_segments_m
 
 contains
 
-  !> Type 5: the ends of all overlaps; then the nodes at a tip, which have none.
+  !> Type 5: the ends of all overlaps; then the nodes at sharp vertices, which have none.
   pure subroutine linearise_overlap_ends(contact, memory, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -148,7 +148,8 @@ contains
       else
         call linearise_on_whole_segment(contact, memory, s, p, list)
       end if
-      if (has_folds(contact)) call linearise_tips(memory, contact%slave%segments(:, s), first, list)
+      if (resolves_vertices(contact)) call linearise_vertices(memory, &
+        contact%slave%segments(:, s), first, list)
     end do
   end subroutine linearise_gauss_points
 
@@ -232,10 +233,10 @@ contains
       point%area = point%area*radius_at(memory%positions, point, 1, 2, point%slave_xi)
   end subroutine move_over_segment
 
-  !> Types 6 and 7: the points at the nodes of a segment at the tip of a fold, one for each point
-  !> that gives way to them. How much does is held, and so is what the area of such a point owes to
+  !> Types 6 and 7: the points at the nodes of a segment at a sharp vertex, one for each point that
+  !> shifts area to them. The share is held, and so is what the area of such a point owes to
   !> its own projection.
-  pure subroutine linearise_tips(memory, ends, first, list)
+  pure subroutine linearise_vertices(memory, ends, first, list)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2) !! nodes of the segment
     integer, intent(in) :: first   !! of its points, the last ones on the list
@@ -272,7 +273,7 @@ contains
       end do
       list%points(p)%area = list%points(p)%area - (shares(1) + shares(2))
     end do
-  end subroutine linearise_tips
+  end subroutine linearise_vertices
 
   !> Points of the list at the nodes of a segment, 0: none.
   pure function points_at_ends(points, ends) result(at_end)

@@ -22,7 +22,7 @@ module element_erosion_m
   implicit none
   private
   public :: finish_erosion, release_free_nodes, report_erosion, failure_log_t, update_failures, &
-    report_failures, update_outlines, restore_outlines
+    report_failures, update_interfaces, restore_interfaces
 
   !> Failures that have been reported.
   type :: failure_log_t
@@ -184,9 +184,9 @@ contains
 
   !> Update interfaces whose surfaces lost elements or were newly exposed, in the order of the deck.
   !> Energy of the springs that were removed becomes eroded energy.
-  subroutine update_outlines(model, has_lost, state)
+  subroutine update_interfaces(model, has_eroded, state)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: has_lost(:) !! (n_part) the part lost elements in this cycle
+    logical, intent(in) :: has_eroded(:) !! (n_part) the part lost elements in this cycle
     type(state_t), intent(inout) :: state
     type(contact_t), allocatable :: previous
     logical, allocatable :: is_left(:)
@@ -195,17 +195,17 @@ contains
 
     is_left = state%elements%erosion%status(model%layout%element_slot) == intact
     call update_exposed_quads(model, is_left, state)
-    do i = 1, size(state%outlines)
-      if (.not. (loses(state%outlines(i)%slave) .or. loses(state%outlines(i)%master))) cycle
-      previous = state%outlines(i)
+    do i = 1, size(state%interfaces)
+      if (.not. (loses(state%interfaces(i)%slave) .or. loses(state%interfaces(i)%master))) cycle
+      previous = state%interfaces(i)
       ! Nodes that leave the interface have no contact force.
       state%force_special(:, state%contacts(i)%nodes) = 0.0_wp
-      call set_remaining_surfaces(model, i, is_left, state%outlines(i))
-      if (state%outlines(i)%birth >= huge(1.0_wp)) then
-        call close_contact(state%outlines(i), model, state%motion, state%dt, state%contacts(i), &
+      call set_remaining_surfaces(model, i, is_left, state%interfaces(i))
+      if (state%interfaces(i)%birth >= huge(1.0_wp)) then
+        call close_contact(state%interfaces(i), model, state%motion, state%dt, state%contacts(i), &
           lost)
       else
-        call renew_contact(previous, state%outlines(i), model, state%motion, state%contacts(i), &
+        call renew_contact(previous, state%interfaces(i), model, state%motion, state%contacts(i), &
           lost)
       end if
       state%elements%erosion%removed_energy(4) = state%elements%erosion%removed_energy(4) + lost
@@ -220,13 +220,13 @@ contains
       logical :: loses
 
       if (allocated(surface%parts)) then
-        loses = any(has_lost(surface%parts))
+        loses = any(has_eroded(surface%parts))
       else
         loses = .not. all(is_left(surface%segment_element))
       end if
     end function loses
 
-  end subroutine update_outlines
+  end subroutine update_interfaces
 
   !> Update the mass shares of quads whose neighbours have eroded.
   subroutine update_exposed_quads(model, is_left, state)
@@ -266,7 +266,7 @@ contains
   end subroutine set_remaining_surfaces
 
   !> Restore the surfaces of interfaces before a state with eroded elements is read.
-  subroutine restore_outlines(model, state)
+  subroutine restore_interfaces(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     logical, allocatable :: is_left(:)
@@ -275,10 +275,10 @@ contains
     is_left = state%elements%erosion%status(model%layout%element_slot) == intact
     if (all(is_left)) return
     call update_exposed_quads(model, is_left, state)
-    do i = 1, size(state%outlines)
-      call set_remaining_surfaces(model, i, is_left, state%outlines(i))
-      call prepare_contact(state%outlines(i), model, state%contacts(i))
+    do i = 1, size(state%interfaces)
+      call set_remaining_surfaces(model, i, is_left, state%interfaces(i))
+      call prepare_contact(state%interfaces(i), model, state%contacts(i))
     end do
-  end subroutine restore_outlines
+  end subroutine restore_interfaces
 
 end module element_erosion_m

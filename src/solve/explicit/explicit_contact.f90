@@ -10,7 +10,7 @@ module explicit_contact_m
   use contacts_m, only : penalty_implicit
   use implicit_penalty_m, only : pressure_step_t, start_pressure_step, find_rows, pressures_ahead
   use kinds_m, only : wp
-  use law_state_m, only : has_made, has_lost, energy_limit_t
+  use law_state_m, only : energy_created, energy_lost, energy_limit_t
   use log_m, only : log_t, warn, write_log, to_text, percent
   use model_m, only : model_t
   use node_motion_m, only : leap_t, predict_velocity, solve_rigids, damping_of
@@ -73,18 +73,18 @@ contains
         limit%warned = .true.
         call warn(log, instant()//limit_text(limit, state%largest_energy)//hint)
       end if
-      sign_of = merge(has_made, has_lost, monitor%balance < 0.0_wp)
+      sign_of = merge(energy_created, energy_lost, monitor%balance < 0.0_wp)
       ! In the first cycles the work of the stored energy is not in the balance yet.
       if (monitor%changes(sign_of)%warned .or. abs(monitor%balance) <= &
         noticed_share*max(state%largest_energy, contact%energy)) return
       ! While an interference ramps up there is no energy yet to compare with.
       if (contact%has%interference .and. contact%interference%remaining > 0.0_wp) return
       ! Impacts of implicit springs are plastic; the end reports their loss.
-      if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) return
+      if (sign_of == energy_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) return
       monitor%changes(sign_of)%warned = .true.
       call warn(log, instant()//'the contact springs ' &
         //amount_text(model, i, sign_of, state)//hint//trim(merge(not_lost, repeat(' ', &
-        len(not_lost)), sign_of == has_lost)))
+        len(not_lost)), sign_of == energy_lost)))
     end associate
 
   contains
@@ -116,7 +116,7 @@ contains
       monitor%balance = contact%energy - monitor%stored
       ! Springs loaded at time zero start with their stored energy.
       if (state%cycle == 0) return
-      associate (largest => monitor%changes(merge(has_made, has_lost, change < 0.0_wp)))
+      associate (largest => monitor%changes(merge(energy_created, energy_lost, change < 0.0_wp)))
         if (abs(change) <= largest%amount) return
         largest%amount = abs(change)
         largest%time = state%time
@@ -155,8 +155,8 @@ contains
         name = 'interface '//to_text(model%contacts(i)%id)
         if (memory%limit%n_limited > 0) call write_log(log, name//': ' &
           //limit_text(memory%limit, state%largest_energy))
-        sign_of = merge(has_made, has_lost, monitor%balance < 0.0_wp)
-        if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) then
+        sign_of = merge(energy_created, energy_lost, monitor%balance < 0.0_wp)
+        if (sign_of == energy_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) then
           ! Impact is plastic within the first row of elements.
           if (monitor%balance > 0.0_wp) call write_log(log, name//': impacts dissipated ' &
             //to_text(monitor%balance)//per_depth(model%controls%units, 'F L', &
@@ -183,7 +183,7 @@ contains
 
     associate (monitor => state%contacts(i)%monitor, &
       largest => state%contacts(i)%monitor%changes(sign_of))
-      text = trim(merge('created', 'lost   ', sign_of == has_made))//' energy: ' &
+      text = trim(merge('created', 'lost   ', sign_of == energy_created))//' energy: ' &
         //to_text(abs(monitor%balance))//', '//percent(abs(monitor%balance), state%largest_energy) &
         //' of the largest energy so far '//to_text(state%largest_energy) &
         //' (initial energy and external work)'

@@ -14,7 +14,7 @@ module explicit_cycle_m
   use start_m, only : check_added_mass, set_contact_masses
   use contacts_m, only : penalty_implicit
   use element_erosion_m, only : finish_erosion, release_free_nodes, failure_log_t, &
-    update_failures, update_outlines
+    update_failures, update_interfaces
   use errors_m, only : error_t
   use health_m, only : tile_check_t, check_elements, are_sound, check_step, report_collapsed, &
     check_cycle
@@ -166,7 +166,7 @@ contains
     if (size(model%contacts) > 0) call lap(monitor%clock, phase_nodes)
     call plan_sampling(model, cycle%writes, state)
     do i = 1, size(model%contacts)
-      call apply_contact(state%outlines(i), state%motion, state%contact_mass, state%time, &
+      call apply_contact(state%interfaces(i), state%motion, state%contact_mass, state%time, &
         state%dt_before, state%cycle, monitor%clock, state%contacts(i), state%force_special)
       call lap_interface(monitor%clock, i)
       call check_springs(model, i, state, monitor%log)
@@ -293,7 +293,7 @@ contains
       ! Nodes without elements, and surfaces of interfaces.
       call release_free_nodes(model, cycle%leap, cycle%freed, state)
       associate (n_eroded => state%elements%erosion%n_eroded)
-        call update_outlines(model, n_eroded > cycle%n_eroded_seen, state)
+        call update_interfaces(model, n_eroded > cycle%n_eroded_seen, state)
         cycle%n_eroded_seen = n_eroded
       end associate
       cycle%refines = needs_refinement(state%elements)

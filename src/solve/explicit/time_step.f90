@@ -277,7 +277,7 @@ contains
       .and. model%contacts%penalty_unit /= penalty_implicit) .or. is_tied(model%contacts) &
       .or. state%contacts%rules_step
     if (.not. allocated(bounds)) allocate (bounds(size(model%contacts)))
-    call bound_springs(state%outlines, state%contact_mass, state%contacts, &
+    call bound_springs(state%interfaces, state%contact_mass, state%contacts, &
       merge(1.0_wp, 0.0_wp, counts), bounds)
     where (.not. counts) bounds%rate = 0.0_wp
   end subroutine update_spring_bounds

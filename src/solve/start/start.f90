@@ -7,7 +7,7 @@ module start_m
   use automatic_penalty_m, only : set_automatic_penalties
   use block_state_m, only : block_state_t
   use conditions_m, only : motion_velocity
-  use contact_log_m, only : log_softness
+  use contact_log_m, only : log_compliance
   use contacts_m, only : is_tied
   use controls_m, only : is_asked, group_nodes
   use curves_m, only : curve_value
@@ -95,7 +95,7 @@ contains
       allocate (state%quiet_since(size(model%controls%ends)), source=-1.0_wp)
     call start_contacts(model, log, state, error, inside_tests)
     if (allocated(error)) return
-    state%outlines = model%contacts
+    state%interfaces = model%contacts
     call set_contact_masses(model, state)
     if (present(remote)) then
       do i = 1, size(state%contacts)
@@ -107,7 +107,7 @@ contains
       call set_automatic_penalties(model, state, log, error)
       if (allocated(error)) return
       do i = 1, size(state%estimates)
-        call log_softness(model%contacts(i), model, state%contacts(i), log, &
+        call log_compliance(model%contacts(i), model, state%contacts(i), log, &
           state%estimates(i)%softness)
       end do
     end if
@@ -186,7 +186,7 @@ contains
     integer :: i
 
     do i = 1, size(state%contacts)
-      call resume_contact(state%outlines(i), state%contacts(i))
+      call resume_contact(state%interfaces(i), state%contacts(i))
     end do
   end subroutine resume_contacts
 
