@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Segments that stand for arcs: by how much these facets put gaps off beside the penetration. Where
-!> that is much, they make the pressure (doc/theory/contact.md, section 8.2).
+!> Error of gaps by the facets of curved surfaces, beside the penetration. Where it is large, facets
+!> govern the pressure (doc/theory/contact.md, section 8.2).
 module contact_facets_m
   use arcs_m, only : find_curvatures, half_turn, sagitta
   use law_state_m, only : contact_estimate_t

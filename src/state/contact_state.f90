@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What one interface remembers from step to step, and the common list of contact points.
+!> State of an interface from step to step, and the common list of contact points.
 !>
-!> A contact point is the only thing that a formulation makes. Whoever generates points promises:
+!> A contact point is the only thing that a formulation makes. All points satisfy:
 !> P1: the weights sum to one on each side;
 !> P2: x_slave - x_master = gap * normal, with positions taken by those weights, normal pointing
 !>     from master to slave and gap < 0 in penetration.

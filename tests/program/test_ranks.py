@@ -229,7 +229,7 @@ def test_a_run_that_goes_on_reports_soft_springs_once(tmp_path):
 
 
 def test_restart_files_go_from_three_processes_to_eight(tmp_path):
-    """Nodes between the tiles of others are as old as the start where nobody has gathered them."""
+    """Nodes between the tiles of others are as old as the start where they have not been gathered."""
     (tmp_path / "job.k").write_text(with_cycles(settling(), 40, 20), encoding="ascii")
     run(tmp_path, 1, "i=job.k", "d=one")
     run(tmp_path, 3, "i=job.k", "d=rest")

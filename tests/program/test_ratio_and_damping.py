@@ -54,7 +54,7 @@ def damped(rate, factors=(0.0, 0.0), curve=None):
 
 @pytest.mark.parametrize("share, turns", [(0.1, False), (0.99, False), (1.01, False), (1.99, False), (2.01, True), (1000.0, True)])
 def test_damping_beyond_the_step_is_reported(slideline, tmp_path, share, turns):
-    """Told once where D dt passes 1; with the factor that velocities really fall by, and whether they change sign."""
+    """Reported once where D dt passes 1; with the factor that velocities really fall by, and whether they change sign."""
     done = slideline("d=o", deck=damped(share / STEP))
     assert done.returncode == 0
     log = (tmp_path / "o" / "job.log").read_text()

@@ -198,7 +198,7 @@ static int fails(const char *kind, int file, const char *name) {
   count++;
   if (count < atol(getenv("FAULT_AT"))) return 0;
   if (getenv("FAULT_ONCE") && count > atol(getenv("FAULT_AT"))) return 0;
-  FILE *reported = fopen(getenv("FAULT_TOLD"), "w");
+  FILE *reported = fopen(getenv("FAULT_REPORTED"), "w");
   if (reported) fclose(reported);
   errno = atoi(getenv("FAULT_ERRNO"));
   return 1;
@@ -249,7 +249,7 @@ def test_a_fault_at_any_call_leaves_a_whole_file(exe, job, checked, kind):
             shutil.rmtree(folder, ignore_errors=True)
             reported = job.folder / "reported"
             reported.unlink(missing_ok=True)
-            variables = {"LD_PRELOAD": str(library), "FAULT_KIND": kind, "FAULT_AT": str(number), "FAULT_TOLD": str(reported),
+            variables = {"LD_PRELOAD": str(library), "FAULT_KIND": kind, "FAULT_AT": str(number), "FAULT_REPORTED": str(reported),
                          "FAULT_ERRNO": str(5 if number % 2 else 28), **({"FAULT_ONCE": "1"} if once else {})}
             done = subprocess.run([exe, "i=job.k", "d=faulty"], cwd=job.folder, capture_output=True, text=True, timeout=60,
                                   check=False, env={**os.environ, **variables})

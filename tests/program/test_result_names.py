@@ -275,7 +275,7 @@ def test_requests_while_a_deck_is_read_are_heeded(exe, deck):
 
 
 @pytest.mark.parametrize("word", ["job.k", "wrong.k"])
-def test_json_that_reaches_nobody_is_an_error_of_files(exe, deck, word):
+def test_json_that_cannot_be_written_is_an_error_of_files(exe, deck, word):
     (deck / "wrong.k").write_text("*KEYWORD\n*NODEX\n*END\n")
     with open("/dev/full", "w", encoding="ascii") as full:
         done = subprocess.run([exe, "check", word, "--json"], cwd=deck, stdout=full, stderr=subprocess.PIPE, text=True,

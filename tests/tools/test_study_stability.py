@@ -206,7 +206,7 @@ def test_energy_made_is_seen_behind_what_springs_hold_and_damping_takes():
 
 
 def test_the_program_knows_how_sharp_its_limit_is():
-    """Where nobody chose the penalty the start warns of the step only beyond the least ratio of the page (contact_step_limit.f90)."""
+    """With the default penalty the start warns of the step only beyond the least ratio of the page (contact_step_limit.f90)."""
     text = (ROOT / "doc/studies/stability.md").read_text(encoding="utf-8")
     table = text[text.index("## Is the program's limit safe"):].split("\n## ")[0]
     ratios = [float(number) for number in re.findall(r"(\d\.\d\d) to", table)]

@@ -65,7 +65,7 @@ def counting_command(command, folder):
 
 
 def count_instructions(command, folder, **options):
-    """`Counts` of a command; UserError where it fails or nobody can count.
+    """`Counts` of a command; UserError where it fails or cannot be counted.
 
     `folder` takes the profile; `options` go to subprocess (env, cwd ...).
     """

@@ -306,7 +306,7 @@ contains
   end function vertex_projection
 
   !> Projection of a point in contact, starting from the segment it was on: stays on the face until
-  !> it ends, goes on to the next one there, changes to a nearer face across gentle corners. When
+  !> it ends, moves to the next one there, changes to a nearer face across gentle corners. When
   !> the contact has ended the projection is not on the surface or its gap is not negative.
   pure function follow_contact(surface, polyline, point, start) result(projection)
     type(surface_t), intent(in) :: surface

@@ -55,8 +55,8 @@ contains
     block%n_ambiguous = nint(total)
   end subroutine project_block
 
-  !> A look at the neighbours of the segments: ambiguous positions that are over their segments all
-  !> the same, and no nearer to a neighbour, are ambiguous no more.
+  !> Resolve ambiguous projections by the neighbours of their segments: those that are over their
+  !> segments and no nearer to a neighbour are kept.
   pure subroutine resolve_ambiguous(surface, polyline, block)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_node) positions

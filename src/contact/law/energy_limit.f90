@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Contact never returns more than it took: one account and one factor per interface and explicit
-!> cycle (doc/theory/contact.md, section 6.1). Springs whose areas and shares change with the angle
-!> have no potential; where they would hand out more than they were given, all forces of the
+!> Energy-controlling scale factor of the contact forces, one per interface and explicit cycle
+!> (doc/theory/contact.md, section 6.1). Springs whose areas and shares change with the angle have
+!> no potential; where they would return more energy than they received, all forces of the
 !> interface are scaled down by one factor, so that momentum and moments stay in balance.
 module energy_limit_m
   use contact_state_m, only : contact_state_t, features_t, exchange

@@ -197,9 +197,9 @@ contains
     slider%before = memory%scratch%previous_state(i)
   end subroutine read_node
 
-  !> A point as a site. A master node that was none of the points starts from what the two ends of
-  !> its slave segment had (of nothing it would lose that part of the shear), and goes on sliding
-  !> where one of them slid.
+  !> A point as a site. A master node that was no point before starts from the tractions of the two
+  !> ends of its slave segment (from zero that part of the shear would be lost), and slides where
+  !> one of them slid.
   pure subroutine read_point(rule, memory, p, slider)
     type(friction_rule_t), intent(in) :: rule
     type(contact_state_t), intent(in) :: memory

@@ -32,7 +32,8 @@ module points_mortar_m
   !> Part of a slave segment next to its ends where master nodes do not cut it: the points of an
   !> overlap integrate a kink this close to its end to the square of this part, round-off.
   real(wp), parameter :: least_part = 1.0e-6_wp
-  !> Cosines of the turn at a node up to which nothing changes, and from which on all gives way.
+  !> Cosines of the turn at a node up to which averages are kept, and from which on quadrature is
+  !> nodal.
   real(wp), parameter :: gentle = 0.99026806874157036_wp, sharp = 0.95105651629515353_wp
 
 contains
@@ -85,8 +86,8 @@ contains
     end do
   end function master_near
 
-  !> The Gauss points of a segment that have a projection and are not let go, with areas as if they
-  !> were opposed to the master entirely. Of closed boundaries the side next to a convex vertex
+  !> The Gauss points of a segment that have a projection and are not excluded, with areas as if
+  !> they were opposed to the master entirely. Of closed boundaries the side next to a convex vertex
   !> counts less, or not, as with overlaps.
   pure subroutine points_on_whole_segment(contact, memory, s, near, points)
     type(contact_t), intent(in) :: contact
@@ -358,8 +359,8 @@ contains
     end do
   end subroutine find_sharp_vertices
 
-  !> How much gives way at a node, by the segments before and behind it at the start and now: the
-  !> turn outwards, as far as it has come since the start.
+  !> Share of nodal quadrature at a node, by the segments before and behind it at the start and now:
+  !> from the convex turn since the start.
   pure function sharpness(previous, ways) result(part)
     real(wp), intent(in), dimension(2, 2) :: previous, ways !! (x and y, before and behind) m
     real(wp) :: part
@@ -438,7 +439,7 @@ contains
       projection = nearby_projection(contact%master, memory%positions(:, memory%n_slave + 1:), &
         memory%positions(:, node), contact%master%outgoing(points%master_nodes(1, nearest) &
         - memory%n_slave))
-      ! What has been let go stands behind the face.
+      ! Excluded points are behind the face.
       if (memory%has%segment_points) &
         projection%is_on = projection%is_on .and. .not. projection%gap < 0.0_wp
     end if

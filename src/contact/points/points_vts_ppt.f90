@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Type 4, VTS-PPT (virtual-slave-node-to-segment): the gap of a virtual slave node in the middle of
-!> each half of a slave segment, its force handed to the master by the sub-segments that the half
+!> each half of a slave segment, its force on the master shared by the sub-segments that the half
 !> covers, at the centre of each (Zavarise & De Lorenzis 2009; doc/theory/contact.md, section 5.4).
 !> All sub-segments have the gap and the normal of the virtual node, so P2 holds for directions only
 !> in parallel: the net moment is not exactly zero on a kinked master.

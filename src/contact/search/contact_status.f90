@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Status of contact points over the segments of the other surface. An active point is followed from
-!> its segment; a separated one is looked for among its candidate pairs once it can have come near
+!> its segment; a separated one is searched among its candidate pairs once it can have come near
 !> (doc/theory/contact.md, sections 3 and 4).
 module contact_status_m
   use search_state_m, only : contact_status_t, candidates_t, separated, active
@@ -152,7 +152,7 @@ contains
   end subroutine store_projections
 
   !> An active point that needs a decision: it stays on its face until that ends. Across a sharp
-  !> vertex it goes on only where the next face is opposed to it.
+  !> vertex it moves on only where the next face is opposed to it.
   pure subroutine follow_point(status, own, other, pairs, positions, point, i)
     type(contact_status_t), intent(inout) :: status
     type(surface_t), intent(in) :: own, other

@@ -75,7 +75,7 @@ contains
       previous = constant(tractions(point%site))
       before = states(point%site)
       if (nodes(4) == 0 .and. before == is_open) then
-        ! A master node that was none of the points goes on from the ends of its slave segment.
+        ! A master node that was no point before starts from the ends of its slave segment.
         previous = between(tractions(nodes(:2)), point%slave_xi)
         if (any(states(nodes(:2)) == slips)) before = slips
       end if
@@ -117,8 +117,8 @@ contains
     end associate
   end function loaded_gap
 
-  !> Traction from what was before and a slip; in the first tangent of a step, in which nothing has
-  !> moved yet, what slipped before goes on.
+  !> Traction from the previous one and a slip; in the first tangent of a step, before any motion,
+  !> points that slipped before slip.
   pure function linearise_friction(contact, memory, previous, slip, pressure, stiffness, before, &
     length) result(traction)
     type(contact_t), intent(in) :: contact

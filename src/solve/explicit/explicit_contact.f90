@@ -46,7 +46,7 @@ contains
       abs(state%initial_energy + (state%external_work + sum(state%contacts%interference%work))))
     if (writes .or. mod(state%cycle, sampling_interval) == 0) state%contacts%monitor%is_due = .true.
     state%contacts%limit%entry_allowance = entry_share*state%largest_energy/size(state%contacts)
-    ! Prescribed motion supplies what entries need; not so in folds of a surface with itself.
+    ! Prescribed motion supplies what entries need; not so in self contact.
     if (size(model%conditions%motions) + size(model%conditions%rigid_motions) > 0) then
       where (.not. model%contacts%is_self) state%contacts%limit%entry_allowance = huge(1.0_wp)
     end if

@@ -32,7 +32,7 @@ VALGRIND = ("valgrind", "--quiet", "--leak-check=full", "--errors-for-leak-kinds
             f"--suppressions={HERE / 'libraries.supp'}")
 
 PLANTS = (
-    Plant("forces that nobody set", "element/element_dispatch.f90",
+    Plant("forces that are not set", "element/element_dispatch.f90",
           "    force = 0.0_wp\n    do i_chunk", "    do i_chunk", "uninitialised"),
     Plant("a write behind the force slots", "element/element_dispatch.f90",
           "do i = tile%first_special, tile%last_special\n", "do i = tile%first_special, tile%last_special + 1\n",

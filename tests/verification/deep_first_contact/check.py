@@ -104,7 +104,7 @@ def check_sliding_under(run, kind):
             run.check(f"{label}: released by the log", n_released(result), 1)
             run.check(f"{label}: energy created / kinetic energy", created / start, 0.0)
             continue
-        # Nobody has put any energy into the springs: what they return is lent, half a per cent of the kinetic energy,
+        # The springs have received no energy: what they return is the admissible energy, half a per cent of the kinetic energy,
         # and a hundredth of that as slack (theory, 6.1).
         run.check(f"{label}: points that are caught", force["n_active"].max(), 1)
         run.check(f"{label}: contact has ended", force["n_active"][-1], 0)

@@ -69,7 +69,7 @@ def planned(study, wanted):
 
 
 def with_counter(jobs, wanted):
-    """The jobs, and the program and its digest of those that are counted; without these where nobody can count."""
+    """The jobs, and the program and its digest of those that are counted; without these where counting is not possible."""
     if not any(job.counted for job in jobs):
         return jobs, None
     try:

@@ -26,7 +26,7 @@ TITLES = {"hertz": "cylinder on block", "spheres": "spheres", "sliding": "slidin
 CLOSED = ("hertz", "spheres")
 #: Ironing: UNITs of the ways down and along, way along, the part of it that is judged; the deck of the verification case.
 PRESS, DRAW, ALONG, JUDGED = 150.0, 240.0, 4.0, (1.0, 3.9)
-TOLD = re.compile(r"stress behind it differ by +([\d.E+-]+) %")
+REPORTED = re.compile(r"stress behind it differ by +([\d.E+-]+) %")
 
 
 def deck_of(scene, level):
@@ -63,7 +63,7 @@ def measure(job, folder):
     if scene in CLOSED:
         error = line_error(folder, level, ctype) if scene == "hertz" else sphere_error(folder, ctype)
         return {"estimate": float(last(folder / f"{scene}.sleout.csv")["estimate"][0]), "error": error}
-    found = TOLD.search((folder / f"{scene}.log").read_text(encoding="utf-8"))
+    found = REPORTED.search((folder / f"{scene}.log").read_text(encoding="utf-8"))
     if not found:
         raise UserError(f"{folder}: the log tells no estimate")
     if scene == "sliding":

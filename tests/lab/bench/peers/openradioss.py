@@ -20,7 +20,7 @@ LONG_HEADS = 3050               # the first version of histories with lengths of
 
 
 def programs():
-    """Paths of the starter and of the engine, or None where nobody names them."""
+    """Paths of the starter and of the engine, or None where none is set."""
     found = [os.environ.get(name) for name in PROGRAMS]
     return found if all(found) else None
 
