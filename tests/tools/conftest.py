@@ -138,7 +138,7 @@ def tool(capsys):
     return run
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def slideline():
     """The program under test; skipped only if SLIDELINE is not set, never if it is broken."""
     if "SLIDELINE" not in os.environ:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Running the program from Python: run, sweep, plot; names that do not exist; types and completion."""
-import json
 import os
 import re
 import subprocess
@@ -78,28 +77,28 @@ def test_run_that_fails(slideline, tmp_path):
     assert outcome.status == 1 and "refused" in repr(outcome)
 
 
-def test_program_of_tools_that_pip_has_copied(tmp_path, monkeypatch):
-    """Not beside the tools: that of the tree which pip installed from, of the present folder or above it, or by its name."""
-    def tree(name):
-        built = tmp_path / name / "build/release/slideline"
-        built.parent.mkdir(parents=True)
-        built.touch()
-        return built
-
-    class Installed:
-        def read_text(self, name):
-            return json.dumps({"url": (tmp_path / "the tree/tools").as_uri(), "dir_info": {}}) if name == "direct_url.json" else None
+def test_program_that_is_found(tmp_path, monkeypatch):
+    """The one that pip or `cmake --install` has put beside the tools, then those of source trees, then that of the path."""
+    def touch(name):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+        return str(path)
 
     (tmp_path / "away").mkdir()
     monkeypatch.delenv("SLIDELINE", raising=False)
-    monkeypatch.setattr(program, "__file__", str(tmp_path / "venv/lib/slideline_tools/program.py"))
-    monkeypatch.setattr(program.importlib.metadata, "distribution", lambda name: Installed())
     monkeypatch.chdir(tmp_path / "away")
+    monkeypatch.setattr(program, "__file__", str(tmp_path / "env/lib/python3/site-packages/slideline_tools/program.py"))
     assert program.find_program() == "slideline"
-    above = tree(".")
-    assert program.find_program() == str(above)
-    its_tree = tree("the tree")
-    assert program.find_program() == str(its_tree)
+    above = touch("build/release/slideline")
+    assert program.find_program() == above
+    monkeypatch.setattr(program.sys, "prefix", str(tmp_path / "env"))
+    monkeypatch.setattr(program.sysconfig, "get_path", lambda name: str(tmp_path / "env/bin"))
+    by_pip = touch("env/bin/slideline")
+    assert program.find_program() == by_pip
+    monkeypatch.setattr(program, "__file__", str(tmp_path / "usr/share/slideline/python/slideline_tools/program.py"))
+    by_cmake = touch("usr/bin/slideline")
+    assert program.find_program() == by_cmake
     monkeypatch.setenv("SLIDELINE", "/named")
     assert program.find_program() == "/named" and program.find_program("/first") == "/first"
 

@@ -8,16 +8,14 @@ from __future__ import annotations
 
 import concurrent.futures
 import dataclasses
-import importlib.metadata
 import itertools
-import json
 import os
 import pathlib
 import re
 import subprocess
+import sys
+import sysconfig
 import typing
-import urllib.parse
-import urllib.request
 
 from slideline_tools import UserError
 from slideline_tools.histories import History, read_csv
@@ -95,25 +93,23 @@ class Outcome:
 
 
 def find_program(program: str | os.PathLike | None = None) -> str:
-    """The program: as named, $SLIDELINE, build/release/slideline of the tree of these tools (which pip remembers) or of the
-    present folder and those above it, that of the path."""
+    """The program: as named, $SLIDELINE, the one installed with these tools, build/release/slideline of their tree, of
+    the present folder or one above it, that of the path."""
     if named := program or os.environ.get("SLIDELINE"):
         return os.fspath(named)
-    here = pathlib.Path.cwd()
-    for tree in (pathlib.Path(__file__).resolve().parents[2], *installed_from(), here, *here.parents):
+    here, tools = pathlib.Path.cwd(), pathlib.Path(__file__).resolve()
+    installed = []
+    if tools.is_relative_to(sys.prefix):  # by pip
+        installed.append(pathlib.Path(sysconfig.get_path("scripts")))
+    if tools.parents[3].name == "share":  # by cmake --install, in PREFIX/share/slideline/python
+        installed.append(tools.parents[4] / "bin")
+    for folder in installed:
+        if (beside := folder / "slideline").exists():
+            return str(beside)
+    for tree in (tools.parents[2], here, *here.parents):
         if (built := tree / "build" / "release" / "slideline").exists():
             return str(built)
     return "slideline"
-
-
-def installed_from() -> list[pathlib.Path]:
-    """The tree whose folder `tools` pip has installed; empty where these tools come from elsewhere."""
-    try:
-        reported = importlib.metadata.distribution("slideline-tools").read_text("direct_url.json")
-        url = urllib.parse.urlsplit(json.loads(reported or "{}").get("url", ""))
-    except (importlib.metadata.PackageNotFoundError, ValueError):
-        return []
-    return [pathlib.Path(urllib.request.url2pathname(url.path)).parent] if url.scheme == "file" else []
 
 
 def not_run(program: str | os.PathLike, problem: OSError) -> str:

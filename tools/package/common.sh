@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: MIT
+# Sourced by the scripts that make packages, behind tools/setup.sh.
+
+packages=$root/build/package
+version=$(sed -n 's/^project(slideline VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
+mkdir -p "$packages"
+
+# python_with MODULE...: build/venv with these packages of pip.
+python_with() {
+  make_environment &&
+    "$venv/bin/python" -m pip install --disable-pip-version-check --quiet "$@" >"$packages/pip.log" 2>&1 || fail pip
+}
+
+# fail LOG: the end of a log, and the end of the script.
+fail() {
+  tail -n 30 "$packages/$1.log" >&2
+  complain "this failed; its output is in build/package/$1.log"
+  exit 1
+}

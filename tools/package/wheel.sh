@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# usage: tools/package/wheel.sh
+# Makes build/package/slideline-VERSION-py3-none-PLATFORM.whl: programs for x86-64-v2, v3 and v4 which need nothing but
+# the C library, a launcher that starts the fastest one, and the Python tools.
+set -uo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
+. "$root/tools/package/common.sh"
+help_or_go_on "$@"
+
+"$root/tools/package/sdist.sh" || exit 1
+lock
+python_with build auditwheel
+raw=$packages/raw
+rm -rf "$raw" "$packages"/*.whl
+say "building for x86-64-v2, v3 and v4 (some minutes; how far it is stands in build/package/wheel.log)"
+"$venv/bin/python" -m build --wheel --outdir "$raw" "$packages/stage" \
+  -C cmake.define.SLIDELINE_PORTABLE=ON -C "cmake.define.SLIDELINE_LEVELS=x86-64-v2;x86-64-v3;x86-64-v4" \
+  >"$packages/wheel.log" 2>&1 || fail wheel
+# Refused where a program needs a library that not every distribution has.
+"$venv/bin/python" -m auditwheel repair --wheel-dir "$packages" "$raw"/slideline-*.whl >"$packages/auditwheel.log" 2>&1 ||
+  fail auditwheel
+say "the wheel is build/package/$(basename "$packages"/slideline-*.whl)"
