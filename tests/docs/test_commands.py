@@ -40,7 +40,8 @@ SHORTER = {
     "cmake --build build/mine": "grep -q slideline CMakeLists.txt",
     "python3 -m venv build/venv": "test -x build/venv/bin/python",
     "build/venv/bin/python -m pip install -e ./tools": "test -f tools/pyproject.toml",
-    "tar -xzf": "mkdir -p {package}/bin && ln -s $PWD/build/release/slideline {package}/bin && cp -r input {package} && "
+    "tar -xzf": "mkdir -p {package}/bin && ln -s $PWD/build/release/slideline {package}/bin && "
+                "mkdir -p {package}/share/slideline && cp -r input {package}/share/slideline/examples && "
                 "tar -czf {package}.tar.gz {package} && rm -r {package} && {command}",
     "slideline-0.2.0/bin/slideline": "{command} endtim=2e-5 && rm -r {package} {package}.tar.gz",
     "build/venv/bin/python results/hertz_mesh.py": "build/venv/bin/python {here}/coarse_hertz.py results/hertz.msh",  # gmsh
