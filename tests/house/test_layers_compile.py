@@ -33,7 +33,7 @@ def build_small_tree(tmp_path_factory):
         (folder / f"probe_{layer}.f90").write_text(GOOD.format(layer=layer, uses=uses))
     shutil.copy(ROOT / "src/base/build_info.f90.in", tree / "src/base")
     build = tree / "build"
-    for command in (["cmake", "-S", tree, "-B", build, "-G", "Ninja", "-DSLIDELINE_TESTS=OFF",
+    for command in (["cmake", "-S", tree, "-B", build, "-G", "Ninja", "-DSLIDELINE_TESTS=OFF", "-DSLIDELINE_INSTALL=OFF",
                      "-DSLIDELINE_SANITIZE=OFF", "-DSLIDELINE_STATIC_HDF5=OFF", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"],
                     ["cmake", "--build", build]):
         done = subprocess.run(command, capture_output=True, text=True, check=False)

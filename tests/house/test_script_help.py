@@ -11,8 +11,8 @@ from test_house import tracked_files
 
 #: what a script may need to print its head: with no more than this, work that it starts fails at once
 TOOLS = ("sh", "bash", "awk", "dirname")
-#: hands all words on to the program
-LAUNCHER = "tools/package/slideline"
+#: hand all words on to the programs
+LAUNCHERS = ("tools/package/slideline", "tools/package/slideline-tools")
 
 
 def is_shell_script(name):
@@ -21,7 +21,7 @@ def is_shell_script(name):
     return bool(first) and first[0].startswith(b"#!") and first[-1].rsplit(b"/")[-1] in (b"sh", b"bash")
 
 
-SCRIPTS = [name for name in tracked_files() if is_shell_script(name) and name != LAUNCHER]
+SCRIPTS = [name for name in tracked_files() if is_shell_script(name) and name not in LAUNCHERS]
 
 
 @pytest.fixture(scope="module")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Sourced by the scripts that make packages, behind tools/setup.sh.
+# shellcheck disable=SC2154,SC2034  # root and venv are those of setup.sh, version is for the scripts
 
 packages=$root/build/package
 version=$(sed -n 's/^project(slideline VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
@@ -7,8 +8,10 @@ mkdir -p "$packages"
 
 # python_with MODULE...: build/venv with these packages of pip.
 python_with() {
-  make_environment &&
-    "$venv/bin/python" -m pip install --disable-pip-version-check --quiet "$@" >"$packages/pip.log" 2>&1 || fail pip
+  if ! { make_environment &&
+         "$venv/bin/python" -m pip install --disable-pip-version-check --quiet "$@"; } >"$packages/pip.log" 2>&1; then
+    fail pip
+  fi
 }
 
 # fail LOG: the end of a log, and the end of the script.

@@ -5,8 +5,8 @@
 # x86-64-v2, v3 and v4, a launcher, the Python tools, man pages and completion. The maintainer is who builds it.
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
-. "$root/tools/package/common.sh"
 help_or_go_on "$@"
+. "$root/tools/package/common.sh"
 
 lock
 install_packages

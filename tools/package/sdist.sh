@@ -5,8 +5,8 @@
 # HDF5 and LAPACK are installed.
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
-. "$root/tools/package/common.sh"
 help_or_go_on "$@"
+. "$root/tools/package/common.sh"
 
 lock
 install_packages

@@ -5,8 +5,8 @@
 # the C library, a launcher that starts the fastest one, and the Python tools.
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
-. "$root/tools/package/common.sh"
 help_or_go_on "$@"
+. "$root/tools/package/common.sh"
 
 "$root/tools/package/sdist.sh" || exit 1
 lock
