@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# usage: tools/package/release.sh
+# Gathers a release of the present commit in build/package/release: the source tree with the site of all pages
+# (`build/site`, made by tools/docs.sh after tools/test.sh -L verification), source distribution, wheel, archive and Debian
+# package, and their SHA-256 sums.
+set -uo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
+help_or_go_on "$@"
+. "$root/tools/package/common.sh"
+
+release=$packages/release
+tree=$release/slideline-$version-source
+if [ -n "$(git -C "$root" status --porcelain)" ]; then
+  complain "the tree has changes that no commit has: a release is of a commit"
+  exit 1
+fi
+if [ ! -f "$root/build/site/index.html" ]; then
+  complain "there is no build/site: tools/test.sh -L verification, then tools/docs.sh make it"
+  exit 1
+fi
+for script in package/wheel.sh "build.sh package" package/deb.sh; do
+  # shellcheck disable=SC2086  # a script and its words
+  "$root"/tools/$script || exit 1
+done
+rm -rf "$release"
+mkdir -p "$tree"
+{ git -C "$root" archive HEAD | tar -x -C "$tree" && cp -R "$root/build/site" "$tree/doc/site" &&
+  tar -C "$release" -czf "$tree.tar.gz" "$(basename "$tree")" && rm -rf "$tree" &&
+  cp "$packages"/sdist/*.tar.gz "$packages"/*.whl "$packages/slideline_$version"_*.deb "$release" &&
+  cp "$packages/slideline-$version.tar.gz" "$release/slideline-$version-linux-x86_64.tar.gz" &&
+  cd "$release" && sha256sum -- * >SHA256SUMS; } || exit 1
+say "the release is in build/package/release"
