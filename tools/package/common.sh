@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
 # Sourced by the scripts that make packages, behind tools/setup.sh.
-# shellcheck disable=SC2154,SC2034  # root and venv are those of setup.sh, version is for the scripts
+# shellcheck disable=SC2154,SC2034  # root and venv are those of setup.sh, the others are for the scripts
 
 packages=$root/build/package
 version=$(sed -n 's/^project(slideline VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
+# SLIDELINE_LEVELS in the environment: other programs than these, such as "x86-64-v3" alone.
+levels=${SLIDELINE_LEVELS:-x86-64-v2;x86-64-v3;x86-64-v4}
 mkdir -p "$packages"
 
 # python_with MODULE...: build/venv with these packages of pip.

@@ -14,9 +14,9 @@ build=$packages/deb
 stage=$build/stage
 rm -rf "$stage"
 mkdir -p "$stage/DEBIAN" "$build/debian"
-say "building for x86-64-v2, v3 and v4 (some minutes; how far it is stands in build/package/deb.log)"
+say "building for ${levels//;/, } (some minutes; how far it is stands in build/package/deb.log)"
 { cmake -S "$root" -B "$build" -G Ninja -DSLIDELINE_TESTS=OFF -DCMAKE_INSTALL_PREFIX=/usr \
-    "-DSLIDELINE_LEVELS=x86-64-v2;x86-64-v3;x86-64-v4" &&
+    "-DSLIDELINE_LEVELS=$levels" &&
   cmake --build "$build" && DESTDIR=$stage cmake --install "$build" --strip; } >"$packages/deb.log" 2>&1 || fail deb
 
 # What Debian asks of a package: pages and changelog packed, the control file, sums.

@@ -13,9 +13,9 @@ lock
 python_with build auditwheel
 raw=$packages/raw
 rm -rf "$raw" "$packages"/*.whl
-say "building for x86-64-v2, v3 and v4 (some minutes; how far it is stands in build/package/wheel.log)"
+say "building for ${levels//;/, } (some minutes; how far it is stands in build/package/wheel.log)"
 "$venv/bin/python" -m build --wheel --outdir "$raw" "$packages/stage" \
-  -C cmake.define.SLIDELINE_PORTABLE=ON -C "cmake.define.SLIDELINE_LEVELS=x86-64-v2;x86-64-v3;x86-64-v4" \
+  -C cmake.define.SLIDELINE_PORTABLE=ON -C "cmake.define.SLIDELINE_LEVELS=$levels" \
   >"$packages/wheel.log" 2>&1 || fail wheel
 # Refused where a program needs a library that not every distribution has.
 "$venv/bin/python" -m auditwheel repair --wheel-dir "$packages" "$raw"/slideline-*.whl >"$packages/auditwheel.log" 2>&1 ||
