@@ -353,7 +353,8 @@ contains
   end subroutine close_histories
 
   !> Visit the tables. They are stored whole: a restarted run writes them again from the first row,
-  !> whatever happened to the files; tables that it no longer writes are skipped.
+  !> whatever happened to the files; tables that it no longer writes are skipped. A null array is no
+  !> error: a restart may ask for tables that the first run did not write.
   subroutine visit_histories(self, visitor)
     class(histories_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
