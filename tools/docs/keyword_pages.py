@@ -49,7 +49,7 @@ def table_lines(name, source=None):
     """The lines of one table of the reader."""
     source = source or "".join(path.read_text(encoding="utf-8") for path in sorted(SCHEMA.glob("deck_schema*.f90")))
     body = re.search(rf":: {name}\(\*\) = \[character\(\d+\) :: &\n(.*?)\]\n", source, re.S).group(1)
-    return re.findall(r"'([^']*)'", re.sub(r"' &\n\s*//'", "", body))
+    return [row.replace("''", "'") for row in re.findall(r"'((?:[^']|'')*)'", re.sub(r"' &\n\s*//'", "", body))]
 
 
 def range_text(notation):

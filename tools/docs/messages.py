@@ -100,7 +100,7 @@ def read_fields():
     file = "deck/schema/deck_schema.f90"
     for table, form in (("expectations", "is not {}"), ("refusals", "{}")):
         for row in table_lines(table, (ROOT / "src" / file).read_text(encoding="utf-8")):
-            fields, _, text = row.replace("''", "'").partition(" ")
+            fields, _, text = row.partition(" ")
             text = f"has no effect here{text.strip()}" if text.startswith(" :") or text.startswith(":") else form.format(text)
             yield Message(f"({fields}): … {text}", DECK, file, 0)
     for row in table_lines("table_others"):
