@@ -363,8 +363,8 @@ contains
 
     name = 'interface '//to_text(contact%id)//': '
     n = memory%slave_status%n_released + memory%master_status%n_released
-    if (n > 0) call warn(log, name//to_text(n) &
-      //' first contacts were deeper than the limit and were excluded; SRCH sets the limit')
+    if (n > 0) call warn(log, name//'first contacts deeper than the limit were excluded: ' &
+      //to_text(n)//'; SRCH sets the limit')
     if (.not. breaks(contact)) return
     n = count(memory%ties%state == is_broken)
     if (n == 0) then

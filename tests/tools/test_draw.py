@@ -169,7 +169,7 @@ def test_initial_velocity(model):
     """Translation and spin 4 about (1.5, 1.5) for the ring alone; nodes that are held stand still."""
     np.testing.assert_allclose(model.velocity[model.index(85)], [1.0 - 4.0 * 1.5, 4.0 * 1.5])
     np.testing.assert_allclose(model.velocity[model.index(100)], 0.0)
-    np.testing.assert_allclose(model.velocity[model.part_nodes([2])], 0.0)
+    np.testing.assert_allclose(model.velocity[model.cells[model.cell_parts == 2]], 0.0)
 
 
 def test_velocity_of_a_rigid_body(tmp_path, slideline):

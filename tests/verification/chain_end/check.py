@@ -17,7 +17,7 @@ WEIGHT = RHO * WIDTH * HEIGHT * GRAVITY
 LIMIT = 0.5 * RAIL / RAIL_CELLS
 PRESS, OUT, BACK, LIFT, END = 0.15, 0.3, 0.8, 1.3, 1.7
 PRESSED, OUTSIDE = 0.003, 0.8  # guided block: pressed in, moved out
-RELEASED = re.compile(r"(\d+) first contacts were deeper than the limit and were excluded")
+RELEASED = re.compile(r"first contacts deeper than the limit were excluded: (\d+)")
 
 
 def n_released(result):

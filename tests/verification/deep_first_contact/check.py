@@ -7,7 +7,7 @@ import numpy as np
 from contact_types import TYPES
 from meshes import Deck, grid
 
-RELEASED = re.compile(r"(\d+) first contacts were deeper than the limit and were excluded")
+RELEASED = re.compile(r"first contacts deeper than the limit were excluded: (\d+)")
 
 
 def n_released(result):

@@ -175,10 +175,6 @@ class Model:
         """Index of one node by its number."""
         return int(self.indices([node])[0])
 
-    def part_nodes(self, parts: typing.Iterable[int]) -> np.ndarray:
-        """Indices of the nodes of some parts."""
-        return np.unique(self.cells[np.isin(self.cell_parts, list(parts))])
-
     def centre(self, part: int) -> np.ndarray:
         """Middle of the area of a part (its centre of mass, with one density)."""
         corner = self.points[self.cells[self.cell_parts == part]]
