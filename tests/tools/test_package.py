@@ -61,8 +61,8 @@ def test_other_shells(share, shell, name):
 def test_man_pages(share, slideline):
     """Every word of the help is on the page, and every command of the tools."""
     page = (share / "man/man1/slideline.1").read_text().replace("\\-", "-")
-    told = subprocess.run([slideline, "--help"], capture_output=True, text=True, check=True).stdout
-    missing = {word for word in re.findall(r"[A-Za-z0-9=.]+", told) if word not in page}
+    reported = subprocess.run([slideline, "--help"], capture_output=True, text=True, check=True).stdout
+    missing = {word for word in re.findall(r"[A-Za-z0-9=.]+", reported) if word not in page}
     assert missing <= {"usage", "overrides", "for", "sweeps", "while", "it", "runs", "results", "prints", "exit", "status"}
     tools = (share / "man/man1/slideline-tools.1").read_text()
     assert all(f".SH {name}" in tools for name in ("REPORT", "COMPARE", "DRAW"))
