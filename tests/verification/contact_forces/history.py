@@ -42,14 +42,14 @@ def histories(points, own, other, borne=None):
             offset = max(0.0, offset - borne(n - 1, offsets[n - 1])[i])
         for n in range(n, len(points)):
             chain = Chain(other[n])
-            foot = project([points[n, i]], chain, [own(n, i)])[0]
-            if not foot or foot.gap >= 0.0:
+            projection = project([points[n, i]], chain, [own(n, i)])[0]
+            if not projection or projection.gap >= 0.0:
                 break
-            limited = min(offset, -foot.gap)
-            first, second = (other[n, node] - other[n - 1, node] for node in chain.nodes[foot.segment])
-            motion = points[n, i] - points[n - 1, i] - (1.0 - foot.at) * first - foot.at * second
-            slip = abs(motion @ chain.tangent[foot.segment])
-            offset = max(0.0, limited - slip * max(2.0 * limited / chain.length[foot.segment], RAMP))
+            limited = min(offset, -projection.gap)
+            first, second = (other[n, node] - other[n - 1, node] for node in chain.nodes[projection.segment])
+            motion = points[n, i] - points[n - 1, i] - (1.0 - projection.at) * first - projection.at * second
+            slip = abs(motion @ chain.tangent[projection.segment])
+            offset = max(0.0, limited - slip * max(2.0 * limited / chain.length[projection.segment], RAMP))
             if offset <= 0.0:
                 break
             offsets[n, i] = offset

@@ -120,15 +120,15 @@ class Chain:
 
 
 @dataclass
-class Foot:
-    """Projection of a point on a chain: x - foot = gap * normal."""
+class Projection:
+    """Projection of a point on a chain: x - projection = gap * normal."""
     segment: int
     at: float
     gap: float
     normal: np.ndarray
 
     def before(self, chain):
-        """The segment that the foot is on; at a node the one before the node."""
+        """The segment that the projection is on; at a node the one before the node."""
         return self.beside(chain, abs(self.at) <= ON_NODE, -1)
 
     def after(self, chain):
@@ -176,9 +176,9 @@ def of_segment(chain, k):
 
 
 def project(points, chain, owns, averted=AVERTED):
-    """Closest-point projections (Foot or None) of all points, each on all segments that its own
+    """Closest-point projections (Projection or None) of all points, each on all segments that its own
     surface (one Own for each point) may face."""
-    feet = []
+    projections = []
     for point, own in zip(np.atleast_2d(points), owns):
         away = point - chain.start
         at = np.sum(away * chain.tangent, axis=1) / chain.length
@@ -187,23 +187,23 @@ def project(points, chain, owns, averted=AVERTED):
         far = np.hypot(beyond, height)
         far[own.cosines(chain.normal) >= averted] = np.inf
         if not np.isfinite(far).any():
-            feet.append(None)
+            projections.append(None)
             continue
-        feet.append(project_one(point, chain, own, int(np.argmin(far)), at, height))
-    return feet
+        projections.append(project_one(point, chain, own, int(np.argmin(far)), at, height))
+    return projections
 
 
 def project_one(point, chain, own, k, at, height):
     edge = opposed_edge(chain, k, at, height, own)
-    foot = Foot(edge, at[edge], height[edge], chain.normal[edge]) if edge is not None else \
+    projection = Projection(edge, at[edge], height[edge], chain.normal[edge]) if edge is not None else \
         one_foot(point, chain, k, at, height)
-    if foot and foot.gap < 0.0 and not (own.is_opposed(foot.normal) and
-                                        foot.gap > -chain.thick[foot.segment]):
+    if projection and projection.gap < 0.0 and not (own.is_opposed(projection.normal) and
+                                        projection.gap > -chain.thick[projection.segment]):
         behind = [s for s in range(len(chain)) if 0.0 <= at[s] <= 1.0 and own.is_opposed(chain.normal[s])
                   and -chain.thick[s] < height[s] < 0.0]
         best = max(behind, key=lambda s: height[s], default=None)
-        return None if best is None else Foot(best, at[best], height[best], chain.normal[best])
-    return foot
+        return None if best is None else Projection(best, at[best], height[best], chain.normal[best])
+    return projection
 
 
 def opposed_edge(chain, k, at, height, own):
@@ -224,13 +224,13 @@ def opposed_edge(chain, k, at, height, own):
 def one_foot(point, chain, k, at, height):
     """The projection on segment k or its vertex, given coordinates and heights over all segments."""
     if 0.0 <= at[k] <= 1.0:
-        return Foot(k, at[k], height[k], chain.normal[k])
+        return Projection(k, at[k], height[k], chain.normal[k])
     step = 1 if at[k] > 1.0 else -1
     other = chain.next(k, step)
     is_inside = other is not None and height[k] < 0.0 and height[other] < 0.0
     if other is None or (chain.is_sharp(k, other) and height[k] < 0.0 and not is_inside):
         if -OVERSHOOT <= at[k] <= 1.0 + OVERSHOOT:  # the face ends here
-            return Foot(k, at[k], height[k], chain.normal[k])
+            return Projection(k, at[k], height[k], chain.normal[k])
         if other is None:
             return None
     vertex = chain.x[chain.nodes[k, 1 if step == 1 else 0]]
@@ -240,7 +240,7 @@ def one_foot(point, chain, k, at, height):
         k, other, step = other, k, -step
     gap = -distance if is_inside else distance
     normal = radius / gap if distance > 0.0 else chain.normal[k]
-    return Foot(k, 1.0 if step == 1 else 0.0, gap, normal)
+    return Projection(k, 1.0 if step == 1 else 0.0, gap, normal)
 
 
 @dataclass
@@ -319,12 +319,12 @@ def push_nodes(forces, side, stiffness):
     """Nodes of one side on their closest segment of the other; stiffness(node, normal)."""
     chain, other = forces.chains[side], forces.chains[1 - side]
     nodes = range(len(chain.x))
-    for node, foot in zip(nodes, project(chain.x, other, [of_node(chain, node) for node in nodes])):
-        if foot and foot.gap < 0.0:
-            gap = foot.gap + forces.offsets.nodes[side][node]
-            force = -stiffness(node, foot.normal) * gap * foot.normal
+    for node, projection in zip(nodes, project(chain.x, other, [of_node(chain, node) for node in nodes])):
+        if projection and projection.gap < 0.0:
+            gap = projection.gap + forces.offsets.nodes[side][node]
+            force = -stiffness(node, projection.normal) * gap * projection.normal
             forces.at_node(side, node, force)
-            forces.on_segment(1 - side, foot.segment, foot.at, -force)
+            forces.on_segment(1 - side, projection.segment, projection.at, -force)
 
 
 def nts(slave, master, penalty, offsets=None):
@@ -358,14 +358,14 @@ def vts_ppt(slave, master, penalty, offsets=None):
             return slave.start[k] + at * slave.length[k] * slave.tangent[k]
         for q, half in enumerate(((0.0, 0.5), (0.5, 1.0))):
             at = slave.centre(k, *half)
-            foot = project(position(at), master, [of_segment(slave, k)])[0]
-            if not foot or foot.gap >= 0.0:
+            projection = project(position(at), master, [of_segment(slave, k)])[0]
+            if not projection or projection.gap >= 0.0:
                 continue
-            gap = foot.gap + forces.offsets.between[k, q]
-            force = -penalty * slave.weight(k, *half) * gap * foot.normal
+            gap = projection.gap + forces.offsets.between[k, q]
+            force = -penalty * slave.weight(k, *half) * gap * projection.normal
             forces.on_segment(0, k, at, force)
-            ends = [walk(position(end), foot.segment, master) for end in half]
-            parts = portions(master, *ends) or [(foot.segment, foot.at, 1.0)]
+            ends = [walk(position(end), projection.segment, master) for end in half]
+            parts = portions(master, *ends) or [(projection.segment, projection.at, 1.0)]
             total = sum(length for _, _, length in parts)
             for segment, centre, length in parts:
                 forces.on_segment(1, segment, centre, -force * length / total)
@@ -404,7 +404,7 @@ def portions(chain, one, two):
     return found
 
 
-def overlaps(slave, master, k, feet, strict=False):
+def overlaps(slave, master, k, projections, strict=False):
     """Overlaps of slave segment k with the master segments that are opposed to it: both nodes of each
     projected on it and clipped.
 
@@ -413,13 +413,13 @@ def overlaps(slave, master, k, feet, strict=False):
     right, master node at the left or None, at the right or None, master segment, part that counts of
     sides of corners).
     """
-    ends = [end_projection(slave, master, k, node, feet[node]) for node in slave.nodes[k]]
+    ends = [end_projection(slave, master, k, node, projections[node]) for node in slave.nodes[k]]
     if strict and None in ends:
-        faces = [foot.normal for foot in (feet[node] for node in slave.nodes[k]) if foot and foot.gap < 0.0]
+        faces = [projection.normal for projection in (projections[node] for node in slave.nodes[k]) if projection and projection.gap < 0.0]
         is_opposed = any(np.dot(slave.normal[k], normal) < SIDE_ON for normal in faces)
         return [(0.0, 1.0, None, None, None, 1.0)] if is_opposed else []
     first, last = ends[0] and ends[0].after(master), ends[1] and ends[1].before(master)
-    touched = {foot.segment for foot in (feet[node] for node in slave.nodes[k]) if foot and foot.gap < 0.0}
+    touched = {projection.segment for projection in (projections[node] for node in slave.nodes[k]) if projection and projection.gap < 0.0}
     found = []
     for m in range(len(master)):
         if np.dot(slave.normal[k], master.normal[m]) >= SIDE_ON and m not in (first, last):
@@ -462,17 +462,17 @@ def side_part(chain, k, normal, side):
     return part
 
 
-def end_projection(slave, master, k, node, foot):
+def end_projection(slave, master, k, node, projection):
     """Projection of an end of slave segment k: the one that it is in contact with, or the closest on
     what is opposed to the segment; or None, which it is beside a sharp corner."""
-    if foot and foot.gap < 0.0:
-        return foot
-    foot = project(slave.x[node], master, [of_segment(slave, k)], SIDE_ON)[0]
-    if foot and foot.at in (0.0, 1.0):
-        other = master.next(foot.segment, 1 if foot.at else -1)
-        if other is not None and master.is_sharp(foot.segment, other):
+    if projection and projection.gap < 0.0:
+        return projection
+    projection = project(slave.x[node], master, [of_segment(slave, k)], SIDE_ON)[0]
+    if projection and projection.at in (0.0, 1.0):
+        other = master.next(projection.segment, 1 if projection.at else -1)
+        if other is not None and master.is_sharp(projection.segment, other):
             return None
-    return foot
+    return projection
 
 
 def is_past(master, end, m, step):
@@ -489,11 +489,11 @@ def is_past(master, end, m, step):
 def nts_mar(slave, master, penalty, strict=False, offsets=None):
     """Type 5, with the extension for slave surfaces that overhang the master unless strict."""
     forces = Forces(slave, master, offsets)
-    feet = project(slave.x, master, [of_node(slave, node) for node in range(len(slave.x))])
+    projections = project(slave.x, master, [of_node(slave, node) for node in range(len(slave.x))])
     weight = np.zeros(len(slave.x))
     extra = {}
     for k in range(len(slave)):
-        for left, right, left_node, right_node, segment, part in overlaps(slave, master, k, feet, strict):
+        for left, right, left_node, right_node, segment, part in overlaps(slave, master, k, projections, strict):
             share = part * (1.0 if strict else facing(slave.normal[k], master.normal[segment]))
             shares = slave.shares(k, left, right)
             for end, node in enumerate((left_node, right_node)):
@@ -501,16 +501,16 @@ def nts_mar(slave, master, penalty, strict=False, offsets=None):
                     extra[k, node] = extra.get((k, node), 0.0) + share * shares[end]
                 else:
                     weight[slave.nodes[k, end]] += share * shares[end]
-    for node, foot in enumerate(feet):
-        if not foot or foot.gap >= 0.0:
+    for node, projection in enumerate(projections):
+        if not projection or projection.gap >= 0.0:
             continue
-        if weight[node] == 0.0 and not any(s is not None and facing(slave.normal[s], foot.normal) > 0.0
+        if weight[node] == 0.0 and not any(s is not None and facing(slave.normal[s], projection.normal) > 0.0
                                            for s in slave.sides(node)):
             weight[node] = slave.competence()[node]
-        gap = foot.gap + forces.offsets.nodes[0][node]
-        force = -penalty * weight[node] * gap * foot.normal
+        gap = projection.gap + forces.offsets.nodes[0][node]
+        force = -penalty * weight[node] * gap * projection.normal
         forces.at_node(0, node, force)
-        forces.on_segment(1, foot.segment, foot.at, -force)
+        forces.on_segment(1, projection.segment, projection.at, -force)
     forces.offsets.borne = np.zeros(len(slave.x))
     for (k, node), w in extra.items():
         away = master.x[node] - slave.start[k]
@@ -526,69 +526,69 @@ def nts_mar(slave, master, penalty, strict=False, offsets=None):
     return forces.sides
 
 
-def piece_foot(point, chain, piece, foot):
+def overlap_projection(point, chain, piece, projection):
     """Across a sharp corner a Gauss point under the segment of its piece stays with it."""
-    if piece is None or foot is None or foot.segment not in (chain.next(piece, -1),
+    if piece is None or projection is None or projection.segment not in (chain.next(piece, -1),
                                                              chain.next(piece, 1)):
-        return foot
+        return projection
     away = point - chain.start[piece]
     at = np.dot(away, chain.tangent[piece]) / chain.length[piece]
     gap = np.dot(away, chain.normal[piece])
-    if (np.dot(chain.tangent[piece], chain.tangent[foot.segment]) < SHARP and 0.0 <= at <= 1.0
+    if (np.dot(chain.tangent[piece], chain.tangent[projection.segment]) < SHARP and 0.0 <= at <= 1.0
             and -SHALLOW * chain.length[piece] < gap < 0.0):
-        return Foot(piece, at, gap, chain.normal[piece])
-    return foot
+        return Projection(piece, at, gap, chain.normal[piece])
+    return projection
 
 
-def nodal_pressure(slave, master, penalty, spots, offsets=None):
+def nodal_pressure(slave, master, penalty, sites, offsets=None):
     """Types 6 and 7 from integration points: slave segment, coordinate, length weight, and the
     master segment of the overlap for type 7 (None for type 6)."""
     forces = Forces(slave, master, offsets)
-    where = [slave.start[k] + at * slave.length[k] * slave.tangent[k] for k, at, _, _ in spots]
-    feet = project(where, master, [of_segment(slave, k) for k, _, _, _ in spots]) if spots else []
-    feet = [piece_foot(point, master, piece, foot)
-            for point, (_, _, _, piece), foot in zip(where, spots, feet)]
-    kept = [(k, at, w * facing(slave.normal[k], foot.normal)
-             * (sides_part(slave, k, master, foot.segment) if piece is None else 1.0), foot)
-            for (k, at, w, piece), foot in zip(spots, feet) if foot]
-    of_spots = [forces.offsets.on_segment(slave, k, at) if piece is not None else
-                forces.offsets.between[k, i % (len(spots) // len(slave))]
-                for i, (k, at, _, piece) in enumerate(spots)]
-    of_spots = [offset for offset, foot in zip(of_spots, feet) if foot]
+    where = [slave.start[k] + at * slave.length[k] * slave.tangent[k] for k, at, _, _ in sites]
+    projections = project(where, master, [of_segment(slave, k) for k, _, _, _ in sites]) if sites else []
+    projections = [overlap_projection(point, master, piece, projection)
+            for point, (_, _, _, piece), projection in zip(where, sites, projections)]
+    kept = [(k, at, w * facing(slave.normal[k], projection.normal)
+             * (sides_part(slave, k, master, projection.segment) if piece is None else 1.0), projection)
+            for (k, at, w, piece), projection in zip(sites, projections) if projection]
+    of_sites = [forces.offsets.on_segment(slave, k, at) if piece is not None else
+                forces.offsets.between[k, i % (len(sites) // len(slave))]
+                for i, (k, at, _, piece) in enumerate(sites)]
+    of_sites = [offset for offset, projection in zip(of_sites, projections) if projection]
     area, volume = np.zeros(len(slave.x)), np.zeros(len(slave.x))
-    for (k, at, w, foot), offset in zip(kept, of_spots):
+    for (k, at, w, projection), offset in zip(kept, of_sites):
         for node, shape in zip(slave.nodes[k], (1.0 - at, at)):
             area[node] += shape * w
-            volume[node] += shape * w * (foot.gap + offset)
+            volume[node] += shape * w * (projection.gap + offset)
     gap = np.divide(volume, area, out=np.zeros_like(area), where=area > 0.0)
     forces.offsets.borne = np.maximum(0.0, -gap)
     pressure = penalty * forces.offsets.borne
-    for k, at, w, foot in kept:
+    for k, at, w, projection in kept:
         first, second = pressure[slave.nodes[k]]
-        force = w * ((1.0 - at) * first + at * second) * foot.normal
+        force = w * ((1.0 - at) * first + at * second) * projection.normal
         forces.on_segment(0, k, at, force)
-        forces.on_segment(1, foot.segment, foot.at, -force)
+        forces.on_segment(1, projection.segment, projection.at, -force)
     return forces.sides
 
 
 def mortar(slave, master, penalty, n_gauss, offsets=None):
     """Type 6."""
-    spots = [(k, at, w * slave.length[k] * slave.radius(k, at), None)
+    sites = [(k, at, w * slave.length[k] * slave.radius(k, at), None)
              for k in range(len(slave)) for at, w in zip(*gauss(n_gauss))]
-    return nodal_pressure(slave, master, penalty, spots, offsets)
+    return nodal_pressure(slave, master, penalty, sites, offsets)
 
 
 def segmented_mortar(slave, master, penalty, offsets=None):
     """Type 7."""
-    feet = project(slave.x, master, [of_node(slave, node) for node in range(len(slave.x))])
-    spots = []
+    projections = project(slave.x, master, [of_node(slave, node) for node in range(len(slave.x))])
+    sites = []
     for k in range(len(slave)):
-        for left, right, _, _, segment, part in overlaps(slave, master, k, feet):
+        for left, right, _, _, segment, part in overlaps(slave, master, k, projections):
             if facing(slave.normal[k], master.normal[segment]) > 0.0:
                 size = part * (right - left) * slave.length[k]
                 places = [(left + at * (right - left), w) for at, w in zip(*gauss(2))]
-                spots += [(k, at, w * size * slave.radius(k, at), segment) for at, w in places]
-    return nodal_pressure(slave, master, penalty, spots, offsets)
+                sites += [(k, at, w * size * slave.radius(k, at), segment) for at, w in places]
+    return nodal_pressure(slave, master, penalty, sites, offsets)
 
 
 @dataclass

@@ -27,7 +27,7 @@ def pressed_blocks(kind):
                             for k in range(TURNS + 1))]
             for dof in (0, 1):
                 number += 1
-                deck.curve(number, [(float(k), spot[dof] - place[dof]) for k, spot in enumerate(way)])
+                deck.curve(number, [(float(k), point[dof] - place[dof]) for k, point in enumerate(way)])
                 deck.prescribe(node, dof + 1, 2, number)
     deck.node_set(1, up_ids[:4]).node_set(2, low_ids[-5:][::-1]).contact(1, 2, kind, 10.0 * YOUNG, 1)
     return deck.output(plot=1.0, rcforc=1.0, glstat=1.0)

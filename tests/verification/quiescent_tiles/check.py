@@ -13,7 +13,7 @@ WIDTH = 16
 LEAST_TILE = 400
 
 
-def keep_awake(deck):
+def keep_active(deck):
     """A body load of no size moves nothing; with a body load no tile rests."""
     return deck.curve(77, [(0.0, 0.0), (1.0, 0.0)]).add("*LOAD_BODY_Y", (77,))
 
@@ -65,7 +65,7 @@ def two_bars(cycles, is_axisymmetric):
 def same_files(run, name, deck, *args):
     """All that is written has the bits of the run in which every tile is stepped."""
     result = run.program(deck, *args, name=name)
-    other = run.program(keep_awake(deck), name=f"{name}_awake")
+    other = run.program(keep_active(deck), name=f"{name}_active")
     run.true(f"{name}: no tile rests under a body load", stepped(other) is None)
     for field in ("displacement", "velocity"):
         run.true(f"{name}: bits of {field}",
