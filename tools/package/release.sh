@@ -27,7 +27,7 @@ rm -rf "$release"
 mkdir -p "$tree"
 { git -C "$root" archive HEAD | tar -x -C "$tree" && cp -R "$root/build/site" "$tree/doc/site" &&
   tar -C "$release" -czf "$tree.tar.gz" "$(basename "$tree")" && rm -rf "$tree" &&
-  cp "$packages"/sdist/*.tar.gz "$packages"/*.whl "$packages/slideline_$version"_*.deb "$release" &&
+  cp "$packages"/sdist/*.tar.gz "$packages"/*.whl "$packages/slideline_$version"-1_*.deb "$release" &&
   cp "$packages/slideline-$version.tar.gz" "$release/slideline-$version-linux-x86_64.tar.gz" &&
   cd "$release" && sha256sum -- * >SHA256SUMS; } || exit 1
 say "the release is in build/package/release"
