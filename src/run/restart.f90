@@ -112,7 +112,7 @@ contains
       associate (job => restarts%job)
         call archive%expect('job', len(job) > 0 .and. len(job) <= longest_name .and. &
           index(job, '/') == 0 .and. all([(iachar(job(i:i)) >= 32, i=1, len(job))]), &
-          'a name that no file can have')
+          'an invalid file name')
       end associate
     end if
     call archive%leave()
@@ -266,13 +266,13 @@ contains
     associate (ties => memory%ties)
       n = size(ties%side)
       call archive%expect(folder//'state', all(ties%state == is_open .or. ties%state &
-        >= is_held .and. ties%state <= is_beside), 'numbers that mean nothing')
+        >= is_held .and. ties%state <= is_beside), 'states that do not exist')
       call archive%expect(folder//'site', all(ties%site >= 1 &
-        .and. ties%site <= n_sites(memory)), 'numbers that no place of the interface has')
+        .and. ties%site <= n_sites(memory)), 'numbers that no site of the interface has')
       call archive%expect(folder//'first', ties%first(1) == 1 &
         .and. all(ties%first(2:) > ties%first(:n)) .and. (ties%first(n + 1) &
         == memory%tie_points%n + 1 .or. memory%tie_points%n == 0), &
-        'numbers that do not rise to the number of points')
+        'numbers that do not increase to the number of points')
       call archive%expect(folder//'owner', all(ties%owner >= 1 .and. ties%owner &
         <= memory%n_slave + memory%n_master), 'numbers that no node of the interface has')
     end associate
@@ -292,7 +292,7 @@ contains
     if (.not. allocated(status%state)) then
       call archive%expect(folder//'n', n == 0, 'another number of contact points than there are')
       call archive%expect(folder//'n_active', status%n_active == 0, &
-        'contact points that are not there')
+        'contact points that do not exist')
       return
     end if
     call archive%expect(folder//'n', n == n_contact_point, &

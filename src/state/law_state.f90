@@ -183,7 +183,7 @@ contains
     class(visitor_t), intent(inout) :: visitor
 
     call visitor%visit('traction', self%traction)
-    call visitor%visit('state', self%state, whole, is_open, slips, 'numbers that mean nothing')
+    call visitor%visit('state', self%state, whole, is_open, slips, 'states that do not exist')
     call visitor%visit('slip', self%slip)
     call visitor%visit('force', self%force)
     call visitor%visit('work', self%work)

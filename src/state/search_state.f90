@@ -145,7 +145,7 @@ contains
       'numbers that no contact point has')
     call visitor%visit('segment', self%segment)
     call visitor%visit('state', self%state, whole, separated, active, &
-      'numbers that mean nothing')
+      'states that do not exist')
     call visitor%visit('xi', self%xi)
     call visitor%visit('gap', self%gap)
     call visitor%visit('normal', self%normal)
@@ -174,7 +174,7 @@ contains
     class(segment_status_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
 
-    call visitor%visit('state', self%state, whole, separated, active, 'numbers that mean nothing')
+    call visitor%visit('state', self%state, whole, separated, active, 'states that do not exist')
     call visitor%visit('gap', self%gap)
     call visitor%visit('next_search', self%next_search)
     call visitor%visit('earliest_search', self%earliest_search)
