@@ -116,6 +116,7 @@ contains
     case (type_segmented_mortar)
       call points_in_ranges(contact, contact%slave%n_segment, memory, points)
       call finish_segmented_mortar(contact, memory, points)
+    case default; error stop 'internal error: no rule of points for the contact type'
     end select
     if (memory%has%arcs) call curve_points(contact, memory, points)
     call move_alloc(points, memory%points)
@@ -180,6 +181,7 @@ contains
     case (type_mortar); call points_mortar(contact, memory, range(1), range(2), points)
     case (type_segmented_mortar)
       call points_segmented_mortar(contact, memory, range(1), range(2), points, n_released)
+    case default; error stop 'internal error: no rule of points for a range of the contact type'
     end select
     if (n_released == 0) return
     !$omp atomic
