@@ -9,12 +9,11 @@ module interface_m
     add_tie_energy
   use contact_log_m, only : log_contact
   use contact_memory_m, only : prepare_contact
-  use contact_state_m, only : contact_state_t, exchange
+  use contact_state_m, only : contact_state_t, exchange, has_offsets
   use search_state_m, only : pass_t, separated
   use contacts_m, only : contact_t, breaks, penalty_implicit, tie_always
   use damping_m, only : damp_points, find_lag
-  use spring_gaps_m, only : has_offsets, reduce_new_offsets, update_offsets, faded_work, &
-    begin_ramp
+  use spring_gaps_m, only : reduce_new_offsets, update_offsets, faded_work, begin_ramp
   use energy_limit_m, only : store_previous_springs, form_springs, limit_forces, admit_entry_work
   use friction_m, only : store_previous_tractions, form_tractions, has_decay
   use initial_status_m, only : activate_deep_points, activate_deep_segments

@@ -22,7 +22,7 @@ module contact_state_m
   private
   public :: contact_state_t, contact_points_t, contact_scratch_t, arcs_t, features_t, &
     allocate_points, allocate_damping, allocate_tractions, make_room, move_point, &
-    allocate_scratch, exchange, n_side, n_sites, n_springs, site_at
+    allocate_scratch, exchange, n_side, n_sites, n_springs, site_at, has_offsets
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
@@ -300,6 +300,15 @@ contains
       site = points%master_nodes(1, p)
     end if
   end function site_at
+
+  !> Whether some point has an entry offset.
+  pure function has_offsets(memory) result(has)
+    type(contact_state_t), intent(in) :: memory
+    logical :: has
+
+    has = memory%has%entry_offsets .and. (memory%slave_status%has_offset &
+      .or. memory%master_status%has_offset)
+  end function has_offsets
 
   !> Visit the components of a list of contact points.
   subroutine visit_points(self, visitor)

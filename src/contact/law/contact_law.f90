@@ -4,9 +4,9 @@
 !> formulation says; the pressure of every point is kept on the list. Adding a law is a procedure
 !> like apply_penalty, a row of `laws` and a `case` (doc/add_a_law.md).
 module contact_law_m
-  use contact_state_m, only : contact_state_t, n_springs, site_at
+  use contact_state_m, only : contact_state_t, n_springs, site_at, has_offsets
   use dual_m, only : dual_t
-  use spring_gaps_m, only : has_offsets, add_offsets, store_overlaps, ramp_gaps, gather_moment
+  use spring_gaps_m, only : add_offsets, store_overlaps, ramp_gaps, gather_moment
   use kinds_m, only : wp
   use law_state_m, only : contact_monitor_t, spring_t
   use nodal_forces_m, only : average_values, share_out

@@ -19,22 +19,13 @@ module spring_gaps_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: has_offsets, reduce_new_offsets, update_offsets, add_offsets, faded_work, begin_ramp, &
+  public :: reduce_new_offsets, update_offsets, add_offsets, faded_work, begin_ramp, &
     store_overlaps, ramp_gaps, gather_moment, limit_moment
 
   !> Least slope by which an offset fades with the slip.
   real(wp), parameter :: ramp = 0.05_wp
 
 contains
-
-  !> Whether some point has an entry offset.
-  pure function has_offsets(memory) result(has)
-    type(contact_state_t), intent(in) :: memory
-    logical :: has
-
-    has = memory%has%entry_offsets .and. (memory%slave_status%has_offset &
-      .or. memory%master_status%has_offset)
-  end function has_offsets
 
   !> Limit all offsets by the present depths, and let them fade: after the search; in implicit runs
   !> at the end of a step.

@@ -96,13 +96,14 @@ contains
     real(wp), intent(in) :: at !! where the virtual node is on its slave segment
     type(polyline_parameter_t) :: limits(2)
     type(local_coordinates_t) :: local
-    real(wp) :: slope
+    real(wp) :: a(4), b(4), slope
     integer :: k
 
     associate (segment => memory%slave_status%segment(virtual_node), &
       polyline => memory%positions(:, memory%n_slave + 1:), &
-      a => memory%positions(:, contact%slave%segments(1, (virtual_node + 1)/2)), &
-      b => memory%positions(:, contact%slave%segments(2, (virtual_node + 1)/2)))
+      ends => contact%slave%segments(:, (virtual_node + 1)/2))
+      a = memory%positions(:, ends(1))
+      b = memory%positions(:, ends(2))
       local = local_coordinates(contact%master, polyline, (1.0_wp - at)*a + at*b, segment)
       slope = dot_product(separation(b, a), local%t)
       do k = 1, 2

@@ -162,10 +162,8 @@ contains
     real(wp), intent(in) :: xi(n_xi), positions(4, *)
     real(wp), intent(inout) :: segment_points(4, n_xi, n)
     real(wp), dimension(2) :: one, two
-    real(wp) :: weights(n_xi)
     integer :: s, q
 
-    weights = 1.0_wp - xi
     !GCC$ NOVECTOR
     do s = 1, n
       one = positions(3:4, segments(1, s))
@@ -173,7 +171,7 @@ contains
       !GCC$ NOVECTOR
       !GCC$ UNROLL 1
       do q = 1, n_xi
-        segment_points(3:4, q, s) = xi(q)*two + weights(q)*one
+        segment_points(3:4, q, s) = xi(q)*two + (1.0_wp - xi(q))*one
       end do
     end do
   end subroutine move_on_segments

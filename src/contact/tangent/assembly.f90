@@ -4,10 +4,10 @@
 !> 9.1, 9.5 and 9.8).
 module assembly_m
   use contact_law_m, only : linearise_pressure
-  use contact_state_m, only : contact_state_t, n_side
+  use contact_state_m, only : contact_state_t, n_side, has_offsets
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*)
-  use spring_gaps_m, only : has_offsets, ramp_gaps
+  use spring_gaps_m, only : ramp_gaps
   use kinds_m, only : wp
   use friction_m, only : linearise_traction, goes_on
   use law_state_m, only : is_open, slips

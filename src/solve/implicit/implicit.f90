@@ -8,10 +8,11 @@ module implicit_m
   use contact_reports_m, only : report_contact_end
   use contact_law_m, only : measure_springs
   use nodal_forces_m, only : count_step
+  use contact_state_m, only : has_offsets
   use contacts_m, only : breaks
   use controls_m, only : boundary_motion, group_nodes
   use cut_forces_m, only : store_cut_chunks
-  use spring_gaps_m, only : has_offsets, update_offsets
+  use spring_gaps_m, only : update_offsets
   use element_mass_m, only : mass_times, sum_part_motion
   use element_state_m, only : add_part_energies
   use equations_m, only : number_equations, prescribe_step, equations_t
