@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The commands that show a run or a model: info, plot, animate, report and draw."""
+"""The commands that show a run or a model: info, plot, animate, revolve, report and draw."""
 from __future__ import annotations
 
 import argparse
@@ -55,6 +55,16 @@ plot {FILE} --zones --state 20 --state -1 -o x.png
         f"animate {FILE} --field mises --rate 24 -o x.gif", *OF_FIELD,
         ("--rate", {"type": float, "default": 12.0, "help": "pictures a second (12)"}),
         output_to("file ending in .gif or .mp4", required=True))
+    add(commands, revolve, "revolve", "turn an axisymmetric run about its axis into solids",
+        "Turn the states of an axisymmetric run about the axis x = 0: a file of solids for ParaView "
+        "with all states and fields (.vtkhdf), or a picture of one state (.png, takes VTK).", f"""\
+revolve {RUN.replace('collision', 'taylor')} -o taylor_3d.vtkhdf
+revolve {RUN.replace('collision', 'taylor')} --field mises --state -1 --degrees 180 -o x.png""", RESULTS,
+        ("--degrees", {"type": float, "default": 270.0, "help": "angle, at most 360 (270)"}),
+        ("--sectors", {"type": int, "default": 36, "help": "solids around (36)"}),
+        ("--field", {"help": "field that colours the picture"}),
+        ("--state", {"default": "-1", "help": "state of the picture: number or time (-1, the last)"}),
+        output_to("file ending in .vtkhdf or .png", required=True))
     add(commands, report, "report", "write an HTML report of a run",
         "Write one HTML file about a run: how it ended, energies and their balance, force and "
         "pressure of each interface, rigid walls, fields, warnings, parts, timing. It needs no "
@@ -121,6 +131,22 @@ def animate(options) -> int:
     count = animation.animate(Mirrored(results) if options.mirror else results, path, options.field,
                               options.scale, options.rate, options.zoom)
     print(f"wrote {options.output} ({count} states)")
+    return 0
+
+
+def revolve(options) -> int:
+    """Write solids, or draw one state of them."""
+    from slideline_tools import UserError
+    from slideline_tools import revolve as solids
+    from slideline_tools.results import open_run
+    results = open_run(options.results)
+    if options.output.endswith(".vtkhdf"):
+        solids.write(results, options.output, options.degrees, options.sectors)
+    elif options.output.endswith(".png"):
+        solids.draw(results, options.output, options.field, options.state, options.degrees, options.sectors)
+    else:
+        raise UserError(f"{options.output}: expected a name that ends in .vtkhdf or .png")
+    print(f"wrote {options.output}")
     return 0
 
 
