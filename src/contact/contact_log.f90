@@ -10,7 +10,7 @@ module contact_log_m
   use law_state_m, only : is_held, is_broken
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text, percent
-  use model_m, only : model_t
+  use model_m, only : model_t, is_sheet
   use surfaces_m, only : surface_t, has_closed_chain
   use ties_m, only : tied_nodes, tie_distance
   use units_m, only : units_t, in_units, per_depth
@@ -243,7 +243,7 @@ contains
     if (contact%is_self) stiffness = 2.0_wp*stiffness
     rows = row_compliance(contact%slave, model) + row_compliance(contact%master, model)
     if (.not. (stiffness > 0.0_wp .and. rows > 0.0_wp)) return
-    softness = 1.0_wp/(stiffness*rows)
+    softness = contact%thickness/(stiffness*rows)
     call write_log(log, 'interface '//to_text(contact%id)//': the compliance of ' &
       //'its springs is '//to_text(softness)//' times that of the elements at the surfaces (one ' &
       //'row on either side)')
@@ -296,7 +296,7 @@ contains
     if (len(per_length) == 0) per_length = ' per unit length'
     text = to_text(memory%node_penalty)//in_units(model%controls%units, 'F/L') &
       //' per slave node = '//to_text(memory%slave_penalty)//per_length
-    estimate = built_in_penalty(contact, model)
+    estimate = contact%thickness*built_in_penalty(contact, model)
     factor = to_text(memory%slave_penalty/estimate)
     formulation = formulation_of(contact)
     if (formulation%has_two_passes) then
@@ -348,7 +348,7 @@ contains
     end if
     call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text//', contact ' &
       //'force there '//to_text(memory%points%pressure(p)*memory%points%area(p)) &
-      //per_depth(model%controls%units, 'F', model%is_axisymmetric) &
+      //per_depth(model%controls%units, 'F', model%is_axisymmetric, is_sheet(model)) &
       //'; the run starts with such forces; move the bodies apart, or apply the overlap by LCINT')
   end subroutine report_initial_contact
 
@@ -374,7 +374,8 @@ contains
         //to_text(count(memory%ties%state == is_held) + n)//' tie points failed, from time ' &
         //to_text(memory%ties%first_break)//' to '//to_text(memory%ties%last_break) &
         //'; their stored energy, '//to_text(memory%ties%spent) &
-        //per_depth(units, 'F L', contact%is_axisymmetric)//', stays in the energy of contact')
+        //per_depth(units, 'F L', contact%is_axisymmetric, contact%is_sheet) &
+        //', stays in the energy of contact')
     end if
   end subroutine report_end
 

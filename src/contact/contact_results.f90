@@ -65,8 +65,8 @@ contains
     if (memory%has%ties) carries = carries .or. tied_nodes(memory, [is_held, is_broken])
     rows%length = lengths_in_contact(contact%slave, positions(:, :n), contact%is_axisymmetric, &
       carries(:n))
-    lengths = max(tiny(1.0_wp), [rows%length, lengths_in_contact(contact%master, &
-      positions(:, n + 1:), contact%is_axisymmetric, carries(n + 1:))])
+    lengths = contact%thickness*max(tiny(1.0_wp), [rows%length, lengths_in_contact( &
+      contact%master, positions(:, n + 1:), contact%is_axisymmetric, carries(n + 1:))])
     rows%pressure = share(:n)/lengths(:n)
     rows%master_pressure = share(n + 1:)/lengths(n + 1:)
     rows%gap = 0.0_wp

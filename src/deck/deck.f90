@@ -23,6 +23,7 @@ module deck_m
   use deck_material_m, only : read_materials, read_equations, set_pressure_moduli
   use deck_mesh_m, only : read_mesh
   use deck_part_m, only : read_parts, read_sections, make_rigids
+  use deck_plane_stress_m, only : set_plane_stress
   use deck_sections_m, only : read_cross_sections
   use deck_sets_m, only : read_sets, read_histories
   use deck_supports_m, only : read_supports, read_motions, read_common_motions
@@ -159,6 +160,7 @@ contains
     call read_parts(deck, hourglass, equations, model)
     call read_erosions(deck, erodes, step_line, model)
     call set_pressure_moduli(deck, equations, model)
+    call set_plane_stress(deck, model)
     call read_mesh(deck, model, codes, is_sound, body%is_sound)
     call read_sets(deck, model, body%is_whole)
     call read_histories(deck, model)

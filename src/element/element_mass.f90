@@ -122,7 +122,9 @@ contains
         end do
       end do
     end if
-    mass = model%materials(model%parts(model%mesh%element_part(i))%material)%density*mass
+    associate (part => model%parts(model%mesh%element_part(i)))
+      mass = model%materials(part%material)%density*model%sections(part%section)%thickness*mass
+    end associate
   end function element_mass
 
   !> Lumped masses of all nodes.
@@ -176,6 +178,7 @@ contains
       else
         shares = density*(0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
           - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1))))/corners
+        shares = model%sections(model%parts(part)%section)%thickness*shares
         shares(corners + 1:) = 0.0_wp
       end if
     end associate

@@ -6,12 +6,13 @@ module element_start_m
   use element_dispatch_m, only : point_count
   use element_mass_m, only : node_volumes
   use element_state_m, only : start_erosion
-  use eos_pressure_m, only : n_eos_value, n_law_value
+  use eos_pressure_m, only : n_eos_value
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
   use parts_m, only : may_fail, gives_pressure
+  use plane_stress_m, only : n_law_value
   implicit none
   private
   public :: start_elements
@@ -134,6 +135,7 @@ contains
       n_points = point_count(model%sections(part%section))
       n(2) = n_points*history_size(material)
       if (allocated(material%eos)) n(3) = merge(n_law_value, n_eos_value, gives_pressure(material))
+      if (material%is_plane_stress) n(3) = n_law_value + n_points
       if (n_points > 1) then
         n(1) = 3*n_points
       else

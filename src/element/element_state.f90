@@ -10,13 +10,14 @@ module element_state_m
     has_plastic_strain, has_mean_dilatation
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat, may_fail
+  use plane_stress_m, only : thinning_start
   use quad_points_m, only : n_point, point_areas, point_ratios, shape_at_points
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
   public :: start_erosion, update_erosion, is_eroded, stress_of_slot, plastic_strain_of_slot, &
-    find_heat, hoop_strain_of_slot, initial_volume, smallest_ratio, add_part_energies, &
-    count_points, first_failed
+    find_heat, hoop_strain_of_slot, thickness_strain_of_slot, initial_volume, smallest_ratio, &
+    add_part_energies, count_points, first_failed
 
 contains
 
@@ -62,8 +63,9 @@ contains
       if (erosion%status(slot) /= newly_eroded) cycle
       erosion%status(slot) = eroded_before
       erosion%removed_energy(2) = erosion%removed_energy(2) + erosion%internal(slot)
-      erosion%removed_energy(3) = erosion%removed_energy(3) + erosion%hourglass(slot)
       associate (part => slot_part(model%layout, slot), nodes => model%layout%slot_nodes(:, slot))
+        erosion%removed_energy(3) = erosion%removed_energy(3) + erosion%hourglass(slot) &
+          *model%sections(model%parts(part)%section)%thickness
         erosion%n_eroded(part) = erosion%n_eroded(part) + 1
         do k = 1, merge(3, 4, nodes(4) == nodes(3))
           erosion%n_element(nodes(k)) = erosion%n_element(nodes(k)) - 1
@@ -102,6 +104,8 @@ contains
     i_eos = elements%eos_start((slot - 1)/chunk_size + 1)
     if (i_eos > 0) volumetric = -elements%eos_state(i_eos + chunk_size + mod(slot - 1, chunk_size))
     s = elements%deviator(slot, :)
+    if (model%materials(model%parts(slot_part(model%layout, slot))%material)%is_plane_stress) &
+      volumetric = s(1) + s(2)
     stress = [s(1) + volumetric, s(2) + volumetric, volumetric - (s(1) + s(2)), s(3)]
   end function stress_of_slot
 
@@ -194,7 +198,7 @@ contains
     end associate
   end subroutine volume_ratios
 
-  !> Initial area, or volume per radian, of the element in a slot.
+  !> Initial volume of the element in a slot, per unit depth or per radian.
   pure function initial_volume(model, elements, slot) result(volume)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -208,7 +212,8 @@ contains
       volume = sum(start)
     else
       associate (r => elements%reference(slot, :4))
-        volume = 0.5_wp*(r(1)*r(4) - r(3)*r(2))
+        volume = 0.5_wp*(r(1)*r(4) - r(3)*r(2)) &
+          *model%sections(model%parts(slot_part(model%layout, slot))%section)%thickness
       end associate
     end if
   end function initial_volume
@@ -228,6 +233,28 @@ contains
     strain = log_ratio(sum(areas*matmul(u(1, :), shape_at_points)) &
       /sum(areas*matmul(x(1, :), shape_at_points)))
   end function hoop_strain_of_slot
+
+  !> Logarithmic strain of the thickness of the element in a slot, of the mean over its points; 0
+  !> where there is no plane stress.
+  pure function thickness_strain_of_slot(model, elements, slot) result(strain)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: slot
+    real(wp) :: strain
+    integer :: k, n
+
+    strain = 0.0_wp
+    if (.not. model%materials(model%parts(slot_part(model%layout, slot))%material) &
+      %is_plane_stress) return
+    associate (i_chunk => (slot - 1)/chunk_size + 1)
+      n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
+      do k = 1, n
+        strain = strain + elements%eos_state(thinning_start(elements, i_chunk, k) + mod(slot - 1, &
+          chunk_size))
+      end do
+    end associate
+    strain = log_ratio(strain/n)
+  end function thickness_strain_of_slot
 
   !> J - 1 at the points of the element in a slot, and the initial area or volume of each.
   pure subroutine ratios_of_points(elements, slot, u, stretch, start)
@@ -269,23 +296,24 @@ contains
     real(wp), intent(in) :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout), dimension(:) :: internal, hourglass, viscous !! (n_part)
-    real(wp) :: stretch(n_point), start(n_point)
+    real(wp) :: stretch(n_point), start(n_point), depth
     integer :: i_chunk, n, part, slot
 
     do i_chunk = 1, model%layout%n_chunk
       part = model%layout%chunk_part(i_chunk)
       if (model%materials(model%parts(part)%material)%is_rigid) cycle
+      depth = model%sections(model%parts(part)%section)%thickness
       internal(part) = internal(part) + elements%deviatoric_work(i_chunk)
-      hourglass(part) = hourglass(part) + elements%hourglass_work(i_chunk)
-      viscous(part) = viscous(part) + elements%viscous_work(i_chunk)
+      hourglass(part) = hourglass(part) + depth*elements%hourglass_work(i_chunk)
+      viscous(part) = viscous(part) + depth*elements%viscous_work(i_chunk)
       do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
         if (model%layout%slot_element(slot) == 0) cycle
         if (is_eroded(elements, slot)) cycle
         call volume_ratios(model, motion, elements, slot, n, stretch, start)
         associate (material => model%materials(model%parts(part)%material))
           if (elements%eos_start(i_chunk) > 0) then
-            internal(part) = internal(part) + start(1)*(material%eos%datum + elements%eos_state( &
-              elements%eos_start(i_chunk) + mod(slot - 1, chunk_size)))
+            internal(part) = internal(part) + depth*start(1)*(material%eos%datum &
+              + elements%eos_state(elements%eos_start(i_chunk) + mod(slot - 1, chunk_size)))
           else
             internal(part) = internal(part) + sum(start(:n)*volumetric_energy(material%bulk, &
               stretch(:n)))

@@ -6,14 +6,15 @@ module element_stiffness_m
   use block_state_m, only : block_state_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
   use element_tangent_m, only : element_t, shape_t, n_pattern, new_element, set_pattern_values, &
-    form_full_force, form_gradient, find_stress, pressure_of, start_volumes, twice_area, products, &
-    cross
+    form_full_force, form_gradient, find_stress, find_sheet_stress, pressure_of, start_volumes, &
+    twice_area, products, cross
   use hourglass_m, only : form_moduli
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
   use parts_m, only : hourglass_t, material_t
+  use plane_stress_m, only : thinning_start
   use quad_points_m, only : n_point
   use sparse_m, only : sparse_t, add_block
   implicit none
@@ -64,11 +65,11 @@ contains
             call set_pattern_values(element%x + element%u, element%now)
             call set_pattern_values(element%x + element%u - 0.5_wp*du, element%middle)
             call set_pattern_values(du, element%change)
-            call load_points(i_chunk, mod(slot - 1, chunk_size), history_size(material), &
-              committed, element)
+            call load_points(i_chunk, mod(slot - 1, chunk_size), material, committed, element)
             call form_block(material, part%hourglass, committed%point_start(i_chunk) > 0, element, &
               block)
-            call add_block(matrix, equations, equations, block)
+            call add_block(matrix, equations, equations, &
+              model%sections(part%section)%thickness*block)
           end associate
         end do
       end associate
@@ -76,16 +77,17 @@ contains
   end subroutine add_stiffness
 
   !> Load the state of the points of one element, and its hourglass stress, from the streams.
-  pure subroutine load_points(i_chunk, place, n_history, elements, element)
+  pure subroutine load_points(i_chunk, place, material, elements, element)
     integer, intent(in) :: i_chunk
     integer, intent(in) :: place     !! in the chunk, from 0
-    integer, intent(in) :: n_history !! values at each point
+    type(material_t), intent(in) :: material
     type(block_state_t), intent(in) :: elements
     type(element_t), intent(inout) :: element
     integer, parameter :: columns(3) = [0, chunk_size, 2*chunk_size] !! xx yy xy
     real(wp) :: s(3)
-    integer :: first, k, n
+    integer :: first, k, n, n_history
 
+    n_history = history_size(material)
     n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
     first = elements%hourglass_start(i_chunk) + place
     if (n == 1) element%pattern_stress = elements%hourglass_strain([first, first + chunk_size])
@@ -96,6 +98,8 @@ contains
       else
         s = elements%deviator((i_chunk - 1)*chunk_size + place + 1, :)
       end if
+      if (material%is_plane_stress) element%thinning(k) = elements%eos_state(thinning_start( &
+        elements, i_chunk, k) + place)
       element%points(k)%old = [0.5_wp*(s(1) + s(2)), 0.5_wp*(s(1) - s(2)), s(3)]
       if (n_history == 0) cycle
       first = elements%history_start(i_chunk) + n_history*(k - 1)*chunk_size + place
@@ -163,8 +167,13 @@ contains
       end if
       area = twice_area(now)
       call form_integrals(element%is_axisymmetric, now, over)
-      call find_stress(material, gradient, hoop, pressure_of(material%bulk, &
-        sum(start_volumes(element)), over%volume), element%points(1), stress, cosine)
+      if (material%is_plane_stress) then
+        call find_sheet_stress(material, 1, gradient, pressure_of(material%bulk, &
+          sum(start_volumes(element)), over%volume), element, stress, cosine)
+      else
+        call find_stress(material, gradient, hoop, pressure_of(material%bulk, &
+          sum(start_volumes(element)), over%volume), element%points(1), stress, cosine)
+      end if
       call find_resistance(material, hourglass, element, growth, cosine, q)
       ! The mean radius, and what h contributes to a and b in gamma.
       if (element%is_axisymmetric) then

@@ -15,7 +15,8 @@ module element_tangent_m
   implicit none
   private
   public :: element_t, shape_t, n_pattern, new_element, set_pattern_values, form_full_force, &
-    form_gradient, find_stress, pressure_of, start_volumes, twice_area, products, cross
+    form_gradient, find_stress, find_sheet_stress, pressure_of, start_volumes, twice_area, &
+    products, cross
 
   !> Patterns: a, b and h in x and y, and s.
   integer, parameter :: n_pattern = 7
@@ -32,6 +33,7 @@ module element_tangent_m
     real(wp) :: u(2, 4)                 !! displacement
     type(shape_t) :: now, middle, change !! present and mid-step shape, increment in the step
     type(stress_point_t) :: points(n_point) !! at the start of the step
+    real(wp) :: thinning(n_point)       !! plane stress: t/t0 - 1 at the start of the step
     real(wp) :: pattern_stress(2)       !! of the hourglass, at the start of the step
   end type element_t
 
@@ -138,12 +140,12 @@ contains
       volumes(k) = 0.125_wp*volumes(k)
       volume = along(volume, 1.0_wp, volumes(k))
     end do
-    if (allocated(material%rubber)) then
+    if (allocated(material%rubber) .and. .not. material%is_plane_stress) then
       call find_rubber_stress(material%rubber, element, start, volumes, volume, stress)
     else
       pressure = pressure_of(material%bulk, sum(start), volume)
       do k = 1, n_point
-        if (.not. has_mean_dilatation(material)) &
+        if (material%is_plane_stress .or. .not. has_mean_dilatation(material)) &
           pressure = pressure_of(material%bulk, start(k), volumes(k))
         call find_point_stress(material, k, places(k), element, pressure, stress(:, k))
       end do
@@ -177,6 +179,10 @@ contains
     associate (change => element%change)
       call form_gradient(place, change%a%value + shift(1, k)*change%h%value, &
         change%b%value + shift(2, k)*change%h%value, gradient)
+      if (material%is_plane_stress) then
+        call find_sheet_stress(material, k, gradient, pressure, element, stress, cosine)
+        return
+      end if
       hoop = constant(0.0_wp)
       if (element%is_axisymmetric) then
         growth = 0.25_wp*change%s%value + along_a(k)*change%a(1)%value &
@@ -296,6 +302,100 @@ contains
     stress(4) = along(pressure, -2.0_wp, parts(1))
   end subroutine find_stress
 
+  !> Stress of a point in plane stress, times t/t0 where forces follow the thickness. The strain
+  !> increment of the thickness is one more variable, in the place of the radius, until sigma_zz = 0
+  !> eliminates it (static condensation).
+  pure subroutine find_sheet_stress(material, k, gradient, pressure, element, stress, cosine)
+    type(material_t), intent(in) :: material
+    integer, intent(in) :: k
+    type(dual_t), intent(in) :: gradient(2, 2)
+    type(dual_t), intent(in) :: pressure     !! K ln(A/A0)
+    type(element_t), intent(inout) :: element
+    type(dual_t), intent(out) :: stress(4), cosine
+    integer, parameter :: most_rounds = 60
+    type(dual_t) :: strain, ratio, mean
+    real(wp) :: stiffness, change
+    integer :: i, round
+
+    stiffness = material%bulk + 4.0_wp*material%shear/3.0_wp
+    strain = variable(-(stiffness - 2.0_wp*material%shear)/stiffness &
+      *(gradient(1, 1)%value + gradient(2, 2)%value), n_pattern)
+    do round = 1, most_rounds
+      ratio = (1.0_wp + element%thinning(k))*((strain + 2.0_wp)/(2.0_wp - strain))
+      mean = along(pressure, material%bulk, logarithm(ratio))
+      call find_stress(material, gradient, strain, mean, element%points(k), stress, cosine)
+      if (allocated(material%rubber)) call find_sheet_rubber(material%rubber, k, element, ratio, &
+        stress)
+      change = -stress(4)%value/stress(4)%slope(n_pattern)
+      if (abs(change) <= 1.0e-12_wp*abs(strain%value) + 1.0e-15_wp) exit
+      strain%value = max(-1.9_wp, min(1.9_wp, strain%value + max(-0.5_wp, min(0.5_wp, change))))
+    end do
+    call eliminate(stress(4), ratio)
+    do i = 1, 3
+      call eliminate(stress(4), stress(i))
+      if (material%thins) stress(i) = stress(i)*ratio
+    end do
+    stress(4) = constant(0.0_wp)
+  end subroutine find_sheet_stress
+
+  !> Eliminate the last variable by the condition that `rest` stays 0.
+  pure subroutine eliminate(rest, of)
+    type(dual_t), intent(in) :: rest
+    type(dual_t), intent(inout) :: of
+
+    of%slope = of%slope - of%slope(n_pattern)/rest%slope(n_pattern)*rest%slope
+    of%slope(n_pattern) = 0.0_wp
+  end subroutine eliminate
+
+  !> Logarithm of a positive number.
+  pure function logarithm(a) result(c)
+    type(dual_t), intent(in) :: a
+    type(dual_t) :: c
+
+    c%value = log_ratio(a%value - 1.0_wp)
+    c%slope = a%slope/a%value
+  end function logarithm
+
+  !> Cauchy stress xx yy xy and zz of rubber at a point with a stretch of the thickness.
+  pure subroutine find_sheet_rubber(rubber, k, element, stretch, stress)
+    type(rubber_t), intent(in) :: rubber
+    integer, intent(in) :: k
+    type(element_t), intent(in) :: element
+    type(dual_t), intent(in) :: stretch
+    type(dual_t), intent(out) :: stress(4)
+    type(shape_t) :: moved, place
+    type(dual_t) :: theta
+    real(wp) :: areas(n_point)
+    integer :: i
+
+    moved = element%now
+    call set_pattern_values(element%u, moved)
+    call form_place(k, .false., element%now, place)
+    areas = point_areas(element%x)
+    theta = (0.125_wp/areas(k)*twice_area(place))*stretch
+    call form_place(k, .false., moved, place)
+    call find_kirchhoff_stress(rubber, constant(1.0_wp), k, element, place, stress, stretch)
+    do i = 1, 4
+      if (i /= 3) stress(i) = stress(i) + volumetric_part(rubber, theta)
+      stress(i) = stress(i)/theta
+    end do
+  end subroutine find_sheet_rubber
+
+  !> J U'(J) of rubber.
+  pure function volumetric_part(rubber, theta) result(part)
+    type(rubber_t), intent(in) :: rubber
+    type(dual_t), intent(in) :: theta !! J
+    type(dual_t) :: part
+    type(dual_t) :: square
+
+    if (rubber%exponent > 0.0_wp) then
+      part = (-2.0_wp*rubber%a)*power(theta, -rubber%exponent)
+    else
+      square = theta*theta
+      part = 4.0_wp*rubber%d*(square*(square + (-1.0_wp))) - 4.0_wp*rubber%c*power(square, -2.0_wp)
+    end if
+  end function volumetric_part
+
   !> K ln(V/V0).
   pure function pressure_of(bulk, start, volume) result(pressure)
     real(wp), intent(in) :: bulk, start
@@ -322,13 +422,7 @@ contains
     call set_pattern_values(element%u, moved)
     theta = (1.0_wp/sum(start))*volume
     ! J U'(J), common to all points.
-    if (rubber%exponent > 0.0_wp) then
-      mean = (-2.0_wp*rubber%a)*power(theta, -rubber%exponent)
-    else
-      ratio = theta*theta
-      mean = 4.0_wp*rubber%d*(ratio*(ratio + (-1.0_wp))) - 4.0_wp*rubber%c*power(ratio, -2.0_wp)
-    end if
-    mean = sum(start)*mean
+    mean = sum(start)*volumetric_part(rubber, theta)
     do k = 1, n_point
       ratio = (1.0_wp/start(k))*volumes(k)
       call form_place(k, element%is_axisymmetric, moved, place)
@@ -349,13 +443,14 @@ contains
   end subroutine find_rubber_stress
 
   !> Kirchhoff's stress xx yy xy and zz of a point, of (2A + 2B I) b - 2B b b.
-  pure subroutine find_kirchhoff_stress(rubber, scale, k, element, moved, stress)
+  pure subroutine find_kirchhoff_stress(rubber, scale, k, element, moved, stress, stretch)
     type(rubber_t), intent(in) :: rubber
     type(dual_t), intent(in) :: scale    !! of b
     integer, intent(in) :: k
     type(element_t), intent(in) :: element
     type(shape_t), intent(in) :: moved   !! displacement of the point
     type(dual_t), intent(out) :: stress(4)
+    type(dual_t), intent(in), optional :: stretch !! of the thickness
     type(dual_t) :: f(2, 2), b(4), factor
     real(wp) :: p(2), q(2), h(2), inverse
     integer :: i
@@ -374,6 +469,7 @@ contains
       b(2) = scale*products(f(2, 1), f(2, 1), f(2, 2), f(2, 2))
       b(3) = scale*products(f(1, 1), f(2, 1), f(1, 2), f(2, 2))
       b(4) = scale
+      if (present(stretch)) b(4) = stretch*stretch
       if (element%is_axisymmetric) then
         factor = (1.0_wp/dot_product(shape_at_points(:, k), x(1, :)))*moved%s + 1.0_wp
         b(4) = scale*(factor*factor)

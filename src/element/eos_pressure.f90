@@ -10,7 +10,8 @@ module eos_pressure_m
   use layout_m, only : chunk_size
   use material_dispatch_m, only : find_failed, column_damage, history_size
   use parts_m, only : hourglass_t, material_t, gives_pressure, may_fail, spall_pressure, &
-    spall_stress
+    spall_stress, condensed_bulk
+  use plane_stress_m, only : n_law_value
   use quad_kinematics_m, only : form_gradient
   use quad_points_m, only : n_point
   use stable_step_m, only : moduli_t, moduli_of
@@ -18,7 +19,7 @@ module eos_pressure_m
   use volumetric_m, only : eos_chunk_t, form_eos, advance_energy, find_stiffness
   implicit none
   private
-  public :: n_eos_value, n_law_value, load_point_state, start_point_values, add_point_values, &
+  public :: n_eos_value, load_point_state, start_point_values, add_point_values, &
     add_law_values, form_shared_pressure, present_moduli, finish_limits, &
     find_failed_elements
 
@@ -27,9 +28,6 @@ module eos_pressure_m
   integer, parameter :: n_eos_value = 5
   !> Lower bound of the speed of sound, as a share of that of the undeformed material.
   real(wp), parameter :: least_share = 1.0e-3_wp
-  !> Values of each element with a law that gives the pressure: energy, pressure, V/V0 - 1, bulk
-  !> viscosity, bulk and shear modulus.
-  integer, parameter :: n_law_value = 6
 
 contains
 
@@ -54,6 +52,10 @@ contains
     first = first + 2*chunk_size
     stress%start_stretch = elements%eos_state(first:first + chunk_size - 1)
     stress%stretch = chunk%stretch
+    if (material%is_plane_stress) then
+      if (.not. allocated(material%rubber)) return
+      stress%stretch = point%stretch
+    end if
     call form_gradient(point, stress)
   end subroutine load_point_state
 
@@ -83,7 +85,7 @@ contains
 
     chunk%heat = chunk%heat + stress%work*point%mid_area
     if (.not. gives_pressure(material)) return
-    if (allocated(material%rubber)) then
+    if (allocated(material%rubber) .and. .not. material%is_plane_stress) then
       !$omp simd private(lame)
       do i = 1, chunk_size
         lame = max(stress%bulk(i) - 2.0_wp*stress%shear(i)/3.0_wp, 2.0_wp*stress%mean(i)/3.0_wp)
@@ -123,6 +125,8 @@ contains
 
     first = elements%eos_start(i_chunk)
     if (gives_pressure(material)) then
+      if (may_fail(material)) call find_failed_elements(i_chunk, material, elements, failed, &
+        keeps_pressure)
       call form_law_pressure(material, viscosity, inverse_start, elements%eos_state(first), &
         elements%viscous_work(i_chunk), chunk, now)
     else
@@ -143,16 +147,20 @@ contains
     real(wp), intent(inout) :: viscous_work
     type(element_chunk_t), intent(inout) :: chunk
     type(moduli_t), intent(inout) :: now
-    real(wp), dimension(chunk_size) :: pressure, growth, speed_squared, q
+    real(wp), dimension(chunk_size) :: pressure, growth, speed_squared, q, bulk, shear
 
     pressure = -chunk%law_mean*inverse_start
     growth = chunk%stretch - values(:, 3)
-    speed_squared = (max(material%bulk, values(:, 5)) + 4.0_wp*max(material%shear, values(:, 6)) &
-      /3.0_wp)*(1.0_wp + chunk%stretch)/material%density
+    bulk = max(material%bulk, values(:, 5))
+    shear = max(material%shear, values(:, 6))
+    if (material%is_plane_stress) bulk = condensed_bulk(bulk, shear)
+    speed_squared = (bulk + 4.0_wp*shear/3.0_wp)*(1.0_wp + chunk%stretch)/material%density
     call form_viscous_pressure(viscosity, material%density, speed_squared, chunk, q)
     ! Viscous forces act at both ends of the step; their work is not strain energy.
     viscous_work = viscous_work - sum(0.5_wp*growth*(q + values(:, 4))/inverse_start)
-    if (allocated(material%rubber)) then
+    if (material%is_plane_stress) then
+      values(:, 1) = values(:, 1) + chunk%heat*inverse_start
+    else if (allocated(material%rubber)) then
       values(:, 1) = chunk%law_energy*inverse_start
     else
       values(:, 1) = values(:, 1) + chunk%heat*inverse_start - 0.5_wp*growth &
@@ -164,6 +172,8 @@ contains
     values(:, 5) = chunk%law_bulk
     values(:, 6) = chunk%law_shear
     chunk%pressure = -(pressure + q)
+    ! In plane stress points have their own.
+    if (material%is_plane_stress) chunk%pressure = -q
     now = moduli_by_law(material, maxval(chunk%law_bulk), maxval(chunk%law_shear), &
       maxval(chunk%stretch))
   end subroutine form_law_pressure
@@ -177,6 +187,7 @@ contains
 
     now = moduli_t(material%density, max(bulk, material%bulk), max(shear, material%shear), 0.0_wp, &
       .true.)
+    if (material%is_plane_stress) now%bulk = condensed_bulk(now%bulk, now%shear)
     now%sound_speed = sqrt((now%bulk + 4.0_wp*now%shear/3.0_wp)*(1.0_wp + max(0.0_wp, stretch)) &
       /material%density)
   end function moduli_by_law

@@ -5,13 +5,14 @@ module eroding_tiles_m
   use block_state_m, only : block_state_t, intact, newly_eroded
   use element_chunk_m, only : element_chunk_t, reference_inverse, reference_sum, &
     scatter_forces
-  use element_state_m, only : smallest_ratio, initial_volume
+  use element_state_m, only : smallest_ratio, initial_volume, thickness_strain_of_slot
   use eos_pressure_m, only : find_failed_elements
   use kinds_m, only : wp
   use layout_m, only : chunk_size, tile_t
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
-  use parts_m, only : material_t, has_memory_of_heat, erosion_t, asks_for_strain, asks_for_stress
+  use parts_m, only : has_memory_of_heat, erosion_t, asks_for_strain, asks_for_stress
+  use plane_stress_m, only : thinning_start
   use quad_m, only : advance_chunk
   use quad_points_m, only : n_point
   use element_steps_m, only : own_steps
@@ -174,6 +175,10 @@ contains
       first = elements%eos_start(i_chunk) + i - 1
       elements%eos_state([(first + k*chunk_size, k=0, 3)]) = 0.0_wp
       elements%eos_state(first + 4*chunk_size) = material%sound_speed**2
+      if (.not. material%is_plane_stress) return
+      first = thinning_start(elements, i_chunk, 1) + i - 1
+      n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
+      elements%eos_state([(first + k*chunk_size, k=0, n - 1)]) = 0.0_wp
     end associate
   end subroutine make_padding
 
@@ -195,7 +200,7 @@ contains
       if (.not. allocated(material%erosion)) return
       if (material%erosion%by_law) call find_failed_elements(i_chunk, material, elements, leaves, &
         keeps_pressure)
-      if (material%erosion%n_given > 0) call find_by_criteria(material, i_chunk, nodes, motion, &
+      if (material%erosion%n_given > 0) call find_by_criteria(model, i_chunk, nodes, motion, &
         times, elements, leaves)
       call find_by_step(model, material%erosion, i_chunk, motion, elements, leaves)
     end associate
@@ -204,31 +209,34 @@ contains
   end subroutine find_eroding
 
   !> Elements that meet enough criteria of the card at enough points.
-  subroutine find_by_criteria(material, i_chunk, nodes, motion, times, elements, leaves)
-    type(material_t), intent(in) :: material
+  subroutine find_by_criteria(model, i_chunk, nodes, motion, times, elements, leaves)
+    type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
     integer, intent(in) :: nodes(4, chunk_size)
     real(wp), intent(in), contiguous :: motion(:, :)
     real(wp), intent(in) :: times(2)
     type(block_state_t), intent(inout) :: elements
     logical, intent(inout) :: leaves(chunk_size)
-    real(wp), dimension(chunk_size) :: pressure, volumetric, principal, mises
+    real(wp), dimension(chunk_size) :: pressure, volumetric, principal, mises, thickness
     integer :: common(chunk_size), met(chunk_size), points(chunk_size), first, k, n
 
     first = elements%eos_start(i_chunk)
     pressure = elements%eos_state(first + chunk_size:first + 2*chunk_size - 1)
-    associate (erosion => material%erosion)
+    thickness = [(thickness_strain_of_slot(model, elements, (i_chunk - 1)*chunk_size + k), k=1, &
+      chunk_size)]
+    associate (erosion => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material) &
+      %erosion)
       common = merge(1, 0, pressure >= erosion%most_pressure) &
         + merge(1, 0, pressure <= erosion%least_pressure)
       if (times(1) >= erosion%time) common = common + 1
       if (min(erosion%most_volume, -erosion%least_volume) < huge(1.0_wp)) then
         volumetric = log(max(tiny(1.0_wp), 1.0_wp + elements%eos_state(first + 2*chunk_size: &
-          first + 3*chunk_size - 1)))
+          first + 3*chunk_size - 1))) + thickness
         common = common + merge(1, 0, volumetric >= erosion%most_volume .or. &
           volumetric <= erosion%least_volume)
       end if
       if (asks_for_strain(erosion)) call count_strains(erosion, i_chunk, nodes, motion, elements, &
-        common)
+        thickness, common)
       if (erosion%impulse < huge(1.0_wp)) then
         call form_stresses(i_chunk, 0, pressure, elements, principal, mises)
         first = (i_chunk - 1)*chunk_size + 1
@@ -279,12 +287,13 @@ contains
   end subroutine form_stresses
 
   !> Count the strain criteria that are met, from logarithmic principal strains at the centre.
-  pure subroutine count_strains(erosion, i_chunk, nodes, motion, elements, met)
+  pure subroutine count_strains(erosion, i_chunk, nodes, motion, elements, thickness, met)
     type(erosion_t), intent(in) :: erosion
     integer, intent(in) :: i_chunk
     integer, intent(in) :: nodes(4, chunk_size)
     real(wp), intent(in), contiguous :: motion(:, :)
     type(block_state_t), intent(in) :: elements
+    real(wp), intent(in) :: thickness(chunk_size) !! strain of the thickness of plane stress
     integer, intent(inout) :: met(chunk_size)
     real(wp) :: a(2), b(2), f(2, 2), c(3), strain(3), mean, radius, inverse, u(2, 4)
     integer :: i, slot
@@ -302,7 +311,7 @@ contains
       mean = 0.5_wp*(c(1) + c(2))
       radius = sqrt(0.25_wp*(c(1) - c(2))**2 + c(3)**2)
       strain(1:2) = 0.5_wp*log(max(tiny(1.0_wp), [mean + radius, mean - radius]))
-      strain(3) = 0.0_wp
+      strain(3) = thickness(i)
       if (size(elements%reference, 2) > 6) strain(3) = log(max(tiny(1.0_wp), 1.0_wp &
         + sum(u(1, :))/elements%reference(slot, reference_sum)))
       mean = sum(strain)/3.0_wp

@@ -8,7 +8,7 @@ module hourglass_m
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t
   use material_dispatch_m, only : find_failed
-  use parts_m, only : hourglass_t, material_t, hourglass_viscous, hourglass_assumed
+  use parts_m, only : hourglass_t, material_t, hourglass_viscous, hourglass_assumed, condensed_bulk
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
@@ -117,6 +117,8 @@ contains
       end do
     else
       factor = 0.125_wp*hourglass%coefficient*(material%bulk + 4.0_wp*material%shear/3.0_wp)
+      if (material%is_plane_stress) factor = 0.125_wp*hourglass%coefficient &
+        *(condensed_bulk(material%bulk, material%shear) + 4.0_wp*material%shear/3.0_wp)
       !$omp simd
       do i = 1, chunk_size
         chunk%resistance(i) = factor*(chunk%x31(i)**2 + chunk%y31(i)**2 + chunk%x42(i)**2 &
@@ -261,7 +263,7 @@ contains
     end do
   end subroutine hourglass_assumed_strain
 
-  !> QM E/(16 (1 - nu^2)) and nu/(1 - nu).
+  !> QM E/(16 (1 - nu^2)) and nu/(1 - nu); in plane stress QM E/16 and nu.
   pure subroutine form_moduli(material, hourglass, factor, lateral)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
@@ -272,6 +274,9 @@ contains
     factor = 0.25_wp*hourglass%coefficient*material%shear*(3.0_wp*material%bulk + material%shear) &
       /wave
     lateral = (3.0_wp*material%bulk - 2.0_wp*material%shear)/wave
+    if (.not. material%is_plane_stress) return
+    factor = hourglass%coefficient*material%young/16.0_wp
+    lateral = material%poisson
   end subroutine form_moduli
 
   !> Larger eigenvalue of d31 d31 + d42 d42 (dyads): H, and with it the stiffness over `factor`,

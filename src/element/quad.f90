@@ -3,7 +3,7 @@
 !> update. A quad has one point and hourglass control, or 2x2 Gauss points, in axisymmetric models
 !> weighted by their radius: each has the equations of the one-point plane quad, and the hoop strain
 !> v_r/r. The volumetric stress is K ln J of the point, or with mean dilatation K ln(V/V0) of the
-!> element at all four (Nagtegaal, Parks & Rice 1974).
+!> element at all four (Nagtegaal, Parks & Rice 1974). Plane stress: `plane_stress`.
 module quad_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
@@ -15,6 +15,7 @@ module quad_m
   use material_dispatch_m, only : update_stress, history_size, has_mean_dilatation
   use model_m, only : model_t
   use parts_m, only : hourglass_t, material_t, gives_pressure
+  use plane_stress_m, only : update_sheet, form_membrane_stress
   use quad_plain_m, only : is_plain, advance_plain
   use quad_kinematics_m, only : form_shape, form_increments, form_forces, form_axisym_forces, &
     form_rubber_forces, add_pressure_forces, inverse_start
@@ -77,6 +78,12 @@ contains
         limits(2))
       elements%time_limit(i_chunk) = limits(1)
       elements%volume_limit(i_chunk) = limits(2)
+      if (.not. material%is_plane_stress) return
+      associate (thickness => model%sections(part%section)%thickness)
+        chunk%force3 = thickness*chunk%force3
+        chunk%force4 = thickness*chunk%force4
+        chunk%swing = thickness*chunk%swing
+      end associate
     end associate
   end subroutine advance_chunk
 
@@ -99,6 +106,7 @@ contains
       chunk%heat = stress%work*chunk%mid_area
       if (gives_pressure(material)) call add_law_values(material, 1.0_wp/inverse_start(chunk), &
         stress, chunk)
+      if (material%is_plane_stress) call form_membrane_stress(material%thins, stress)
       call form_shared_pressure(i_chunk, material, hourglass, inverse_start(chunk), elements, &
         chunk, now)
     else
@@ -251,6 +259,7 @@ contains
     sums%deviator(:, 1) = sums%deviator(:, 1) + point%volume*stress%sxx
     sums%deviator(:, 2) = sums%deviator(:, 2) + point%volume*stress%syy
     sums%deviator(:, 3) = sums%deviator(:, 3) + point%volume*stress%sxy
+    if (material%is_plane_stress) call form_membrane_stress(material%thins, stress)
     if (has_mean_dilatation(material)) then
       point%pressure = chunk%pressure
     else
@@ -323,7 +332,9 @@ contains
       end if
       call load_point_state(i_chunk, material, ratio, chunk, point, elements, stress)
     end if
-    if (elements%history_start(i_chunk) > 0) then
+    if (material%is_plane_stress) then
+      call update_sheet(i_chunk, k, material, point, elements, stress)
+    else if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk) &
         + (k - 1)*chunk_size*history_size(material)))
     else

@@ -88,6 +88,8 @@ module contacts_m
     type(curve_t), allocatable :: interference !! LCINT: active share of the initial overlap, 0 to 1
     logical :: is_axisymmetric = .false.   !! axisymmetric: lengths weigh with their radius
     logical :: is_self = .false.           !! SURFB 0: one surface with itself; both sides are it
+    logical :: is_sheet = .false.          !! plane stress
+    real(wp) :: thickness = 1.0_wp         !! of plane stress: forces per length over pressures, m
   contains
     procedure :: visit => visit_contact
   end type contact_t
@@ -176,6 +178,8 @@ contains
     if (allocated(self%interference)) call visitor%part('interference', self%interference)
     call visitor%visit('is_axisymmetric', self%is_axisymmetric)
     call visitor%visit('is_self', self%is_self)
+    call visitor%visit('is_sheet', self%is_sheet)
+    call visitor%visit('thickness', self%thickness)
   end subroutine visit_contact
 
   !> Visit the components of a transducer.

@@ -79,7 +79,8 @@ contains
         n = merge(3, 4, nodes(4) == nodes(3))
         x = model%mesh%coordinates(:, nodes)
         masses(:n, i) = model%materials(part%material)%density/n*0.5_wp*((x(1, 3) - x(1, 1))*( &
-          x(2, 4) - x(2, 2)) - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+          x(2, 4) - x(2, 2)) - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1))) &
+          *model%sections(part%section)%thickness
       end associate
     end do
   end function corner_masses
@@ -99,7 +100,8 @@ contains
         .or. model%materials(part%material)%is_rigid) return
       is_exposed = count(shares > main_share) > 1 .or. count(shares > half_share) > 2
       associate (law => model%materials(part%material))
-        if (law%shear < (law%bulk + 4.0_wp*law%shear/3.0_wp)/6.0_wp) &
+        if (law%shear < (law%bulk + 4.0_wp*law%shear/3.0_wp)/6.0_wp &
+          .and. .not. law%is_plane_stress) &
           is_exposed = is_exposed .or. all(is_surrounded(nodes))
       end associate
     end associate

@@ -19,8 +19,8 @@ module model_m
   use controls_m, only : controls_t
   implicit none
   private
-  public :: model_t, mark_meshed_nodes, mark_supports, node_set_t, segment_set_t, part_set_t, &
-    shell_set_t
+  public :: model_t, mark_meshed_nodes, mark_supports, is_sheet, node_set_t, segment_set_t, &
+    part_set_t, shell_set_t
 
   !> *SET_NODE: members in the order of the deck (for surfaces the walking order).
   type :: node_set_t
@@ -74,6 +74,14 @@ module model_m
   end type model_t
 
 contains
+
+  !> Whether the model has plane stress: forces, masses and energies of the whole thickness.
+  pure function is_sheet(model)
+    type(model_t), intent(in) :: model
+    logical :: is_sheet
+
+    is_sheet = any(model%sections(model%parts%section)%is_plane_stress)
+  end function is_sheet
 
   !> Visit the components of the model, without sets, which are resolved in conditions and surfaces.
   subroutine visit_model(self, visitor)

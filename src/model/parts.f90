@@ -15,7 +15,7 @@ module parts_m
     law_piecewise, law_johnson_cook, law_hot_johnson_cook, law_null, &
     hourglass_viscous, hourglass_stiffness, hourglass_assumed, spall_pressure, spall_stress, &
     spall_tension, johnson_cook_t, rubber_t, mooney_rivlin, blatz_ko, blatz_ko_poisson, &
-    erosion_t, asks_for_strain, asks_for_stress
+    erosion_t, asks_for_strain, asks_for_stress, condensed_bulk
 
   !> Element forms, known to the element dispatcher only.
   integer, parameter :: form_one_point = 1, form_full = 2, form_axisym_one_point = 3, &
@@ -36,6 +36,8 @@ module parts_m
     integer :: element_form = form_one_point   !! one of the `form_` constants
     logical :: is_full = .false.               !! full integration
     logical :: is_axisymmetric = .false.       !! axisymmetric
+    logical :: is_plane_stress = .false.       !! plane stress
+    real(wp) :: thickness = 1.0_wp             !! T1 of plane stress, m; else 1
   end type section_t
 
   !> Constants of Johnson and Cook (1983, 1985), flow stress, heat and damage:
@@ -120,6 +122,9 @@ module parts_m
     logical :: needs_eos = .false.   !! its parts must have an equation of state
     logical :: is_rigid = .false.  !! rigid bodies; E and nu for contact only
     logical :: is_fixed(3) = .false. !! rigid body: fixed x, y and rotation about z
+    logical :: is_plane_stress = .false. !! its law holds with sigma_zz = 0 (`plane_stress`); `eos`
+                                         !! is allocated, by law
+    logical :: thins = .false. !! plane stress: forces follow the thickness (ISTUPD)
   contains
     procedure :: visit => visit_material
   end type material_t
@@ -213,6 +218,14 @@ contains
     asks = min(erosion%principal_stress, erosion%mises, erosion%impulse) < huge(1.0_wp)
   end function asks_for_stress
 
+  !> K' that gives with G in plane strain what K gives in plane stress: K' + 4G/3 = E/(1 - nu^2).
+  pure elemental function condensed_bulk(bulk, shear) result(condensed)
+    real(wp), intent(in) :: bulk, shear
+    real(wp) :: condensed
+
+    condensed = 4.0_wp*shear*(6.0_wp*bulk - shear)/(3.0_wp*(3.0_wp*bulk + 4.0_wp*shear))
+  end function condensed_bulk
+
   !> Visit the components of a material.
   subroutine visit_material(self, visitor)
     class(material_t), intent(inout), target :: self
@@ -251,6 +264,8 @@ contains
     call visitor%visit('needs_eos', self%needs_eos)
     call visitor%visit('is_rigid', self%is_rigid)
     call visitor%plain(c_loc(self%is_fixed), storage_size(self%is_fixed), size(self%is_fixed))
+    call visitor%visit('is_plane_stress', self%is_plane_stress)
+    call visitor%visit('thins', self%thins)
   end subroutine visit_material
 
   !> Visit the components of a part.

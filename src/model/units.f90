@@ -97,17 +97,17 @@ contains
     end do
   end function in_units
 
-  !> As `in_units`, per unit depth of plane bodies and per radian of axisymmetric bodies.
-  pure function per_depth(units, form, is_axisymmetric) result(text)
+  !> As `in_units`, per unit depth of plane strain and per radian of axisymmetric bodies.
+  pure function per_depth(units, form, is_axisymmetric, is_sheet) result(text)
     type(units_t), intent(in) :: units
     character(*), intent(in) :: form
-    logical, intent(in) :: is_axisymmetric
+    logical, intent(in) :: is_axisymmetric, is_sheet
     character(:), allocatable :: text
 
     if (is_axisymmetric) then
       text = in_units(units, form)//' per radian'
     else
-      text = in_units(units, form//'/L')
+      text = in_units(units, form//trim(merge('  ', '/L', is_sheet)))
     end if
   end function per_depth
 

@@ -35,8 +35,9 @@ module results_arrays_m
     cell_starts, utf8_text
 
   !> Condition for a field in the file: none; friction or ties; axisymmetric; a material with
-  !> temperature; erosion.
-  integer, parameter :: of_all = 1, of_shear = 2, of_axisym = 3, of_heat = 4, of_erosion = 5
+  !> temperature; erosion; plane stress.
+  integer, parameter :: of_all = 1, of_shear = 2, of_axisym = 3, of_heat = 4, of_erosion = 5, &
+    of_sheet = 6
 
   !> A field of points or cells.
   type :: field_t
@@ -47,7 +48,7 @@ module results_arrays_m
   end type field_t
 
   !> Fields, in the order in which a state writes them.
-  integer, parameter :: n_field = 17
+  integer, parameter :: n_field = 18
   !> Fields, in the order of writing.
   type(field_t), parameter :: fields(n_field) = [ &
     field_t('Points', 3, .false., of_all), &
@@ -64,6 +65,7 @@ module results_arrays_m
     field_t('CellData/pressure', 0, .true., of_all), &
     field_t('CellData/mises', 0, .true., of_all), &
     field_t('CellData/hoop_strain', 0, .true., of_axisym), &
+    field_t('CellData/thickness_strain', 0, .true., of_sheet), &
     field_t('CellData/temperature', 0, .true., of_heat), &
     field_t('CellData/damage', 0, .true., of_heat), &
     field_t('CellData/eroded', 0, .true., of_erosion)]

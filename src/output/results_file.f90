@@ -17,7 +17,7 @@ module results_file_m
   use errors_m, only : error_t, raise, status_files, status_input
   use files_m, only : file_facts_t, facts_of_name, is_same_file, file_exists, lengthen_file, &
     remove_file, rename_file, unfinished
-  use model_m, only : model_t
+  use model_m, only : model_t, is_sheet
   use parts_m, only : has_memory_of_heat
   use snapshot_m, only : snapshot_t
   use history_file_m, only : histories_t
@@ -48,7 +48,7 @@ contains
     integer(long), target :: version(2)
     integer(hid_t) :: space
     integer :: status, n_planned, i
-    logical :: has(5)
+    logical :: has(6)
 
     n_planned = planned_states(model%controls)
     file%path = path
@@ -56,7 +56,7 @@ contains
     if (allocated(error)) return
     allocate (file%times(n_planned))
     has = [.true., any(has_shear(model%contacts)), model%is_axisymmetric, &
-      any(has_memory_of_heat(model%materials)), model%erodes] ! by the needs of fields
+      any(has_memory_of_heat(model%materials)), model%erodes, is_sheet(model)] ! by the needs
     file%which = pack([(i, i=1, size(fields))], has(fields%needs))
     call create_file(file, error)
     if (allocated(error)) return
@@ -182,6 +182,8 @@ contains
     case ('PointData/contact_state'); call gather(places, 1, 1, rows, shot%contact_state)
     case ('CellData/plastic_strain'); call gather(places, 1, 1, rows, shot%plastic_strain)
     case ('CellData/hoop_strain'); call gather(places, 1, 1, rows, shot%hoop_strain)
+    case ('CellData/thickness_strain')
+      call gather(places, 1, 1, rows, shot%thickness_strain)
     case ('CellData/temperature'); call gather(places, 1, 1, rows, shot%temperature)
     case ('CellData/damage'); call gather(places, 1, 1, rows, shot%damage)
     case ('CellData/eroded'); call gather(places, 1, 1, rows, shot%eroded)

@@ -11,7 +11,7 @@ module contact_reports_m
   use kinds_m, only : wp
   use law_state_m, only : contact_estimate_t
   use log_m, only : log_t, warn, write_log, to_text, percent, two_decimals
-  use model_m, only : model_t
+  use model_m, only : model_t, is_sheet
   use state_m, only : state_t
   use type_charts_m, only : better_type, mesh_order
   use units_m, only : per_depth
@@ -155,7 +155,7 @@ contains
         if (abs(friction%work) > 0.0_wp) call write_log(log, 'interface ' &
           //to_text(model%contacts(i)%id)//': friction has dissipated ' &
           //to_text(friction%work - friction%stored) &
-          //per_depth(model%controls%units, 'F L', model%is_axisymmetric))
+          //per_depth(model%controls%units, 'F L', model%is_axisymmetric, is_sheet(model)))
       end associate
     end do
   end subroutine report_contact_end

@@ -177,7 +177,8 @@ contains
     is_carried = .false.
     if (beyond > 0) is_carried = has_stress(model, state, beyond)
     associate (slot => model%layout%element_slot(element))
-      shares = element_shares(model, slot)
+      shares = element_shares(model, slot)/model%sections(model%parts(slot_part(model%layout, &
+        slot))%section)%thickness
       if (allocated(state%elements%mass_ratio)) shares = shares*state%elements%mass_ratio(slot)
       associate (nodes => model%layout%slot_nodes(:, slot))
         if (nodes(4) == nodes(3)) shares(4) = shares(3)
@@ -264,6 +265,7 @@ contains
         volume = 0.5_wp*(d31(1)*d42(2) - d42(1)*d31(2))
         centre = centre_of(model, state, element)
         if (model%is_axisymmetric) volume = volume*centre(1)
+        volume = volume*model%sections(model%parts(slot_part(model%layout, slot))%section)%thickness
         mean = sum(s(:3))/3.0_wp
         shear_square = sum((s(:3) - mean)**2) + 2.0_wp*s(4)**2
         energy = 0.0_wp

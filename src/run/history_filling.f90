@@ -7,6 +7,7 @@ module history_filling_m
   use element_state_m, only : stress_of_slot, plastic_strain_of_slot, is_eroded
   use loads_m, only : add_nodal_loads, add_pressures
   use kinds_m, only : wp
+  use layout_m, only : slot_part
   use model_m, only : model_t
   use face_stress_m, only : position_of
   use snapshot_m, only : snapshot_t, section_result_t
@@ -150,13 +151,15 @@ contains
     type(cross_section_t), intent(in) :: section
     type(state_t), intent(in) :: state
     type(section_result_t), intent(out) :: result
-    real(wp) :: a(2), b(2), length
+    real(wp) :: a(2), b(2), length, depth
     integer :: i
 
+    depth = model%sections(model%parts(slot_part(model%layout, &
+      model%layout%element_slot(section%elements(1))))%section)%thickness
     do i = 1, size(section%edges, 2)
       a = position_of(model, state, section%edges(1, i))
       b = position_of(model, state, section%edges(2, i))
-      length = norm2(b - a)
+      length = depth*norm2(b - a)
       if (model%is_axisymmetric) then
         result%area = result%area + 0.5_wp*length*(a(1) + b(1))
         result%centroid = result%centroid + length/6.0_wp*((2.0_wp*a(1) + b(1))*a + (a(1) &

@@ -9,13 +9,13 @@ module snapshot_filling_m
   use contact_results_m, only : interface_resultants, slave_rows
   use element_mass_m, only : element_shares
   use element_state_m, only : add_part_energies, is_eroded, stress_of_slot, &
-    plastic_strain_of_slot, find_heat, hoop_strain_of_slot
+    plastic_strain_of_slot, find_heat, hoop_strain_of_slot, thickness_strain_of_slot
   use contacts_m, only : has_shear
   use controls_m, only : is_asked
   use history_tables_m, only : table_elout, table_matsum, table_rbdout, table_spcforc
   use layout_m, only : slot_part
   use mass_scaling_m, only : scales_masses, added_masses
-  use model_m, only : model_t, mark_supports
+  use model_m, only : model_t, mark_supports, is_sheet
   use parts_m, only : has_memory_of_heat
   use snapshot_m, only : snapshot_t, interface_result_t, slave_result_t
   use sorting_m, only : sorted_order
@@ -69,6 +69,7 @@ contains
     if (has_history) &
       allocate (snapshot%plastic_strain(n_element), source=0.0_wp)
     if (model%is_axisymmetric) allocate (snapshot%hoop_strain(n_element), source=0.0_wp)
+    if (is_sheet(model)) allocate (snapshot%thickness_strain(n_element), source=0.0_wp)
     if (any(has_memory_of_heat(model%materials))) allocate (snapshot%temperature(n_element), &
       snapshot%damage(n_element), source=0.0_wp)
     if (model%erodes) allocate (snapshot%eroded(n_element), source=0.0_wp)
@@ -315,6 +316,8 @@ contains
       if (model%erodes) snapshot%eroded(i) = merge(1.0_wp, 0.0_wp, is_eroded(state%elements, slot))
       if (model%is_axisymmetric) snapshot%hoop_strain(i) = hoop_strain_of_slot(model, &
         state%motion, slot)
+      if (allocated(snapshot%thickness_strain)) snapshot%thickness_strain(i) = &
+        thickness_strain_of_slot(model, state%elements, slot)
       if (allocated(snapshot%damage)) call find_heat(model, state%elements, slot, &
         snapshot%temperature(i), snapshot%damage(i))
     end do

@@ -28,6 +28,9 @@ KNOWN = [
     # Lame: p = E delta/(R C), of which a quarter of the circle pushes R p to the right.
     ("press_fit/press_fit.k", [], "rcforc", lambda row: float(row["time"]) > 0.99 and row["side"] == "master",
      "fx", 0.05 * 2.1e11 * 1.0e-3 * 0.3296703, 0.003),
+    # Peterson: 3.15 at the edge, which falls by 7/3 of it in a radius.
+    ("plate_hole/plate_hole.k", [], "elout", lambda row: float(row["time"]) > 0.99, "sxx",
+     3.15e8 * (1.0 - 7.0 / 3.0 * 0.588 / 20.0), 0.02),
 ]
 PATCHES = [deck for deck in DECKS if deck.startswith("patch/")]
 

@@ -67,6 +67,8 @@ SCENES = {
     "seal": Scene("input/seal/seal.k", "mises", (0.0, 1.45e-2, 2.85e-2), limits=(0.0, 1.0)),
     "v_bend": Scene("input/v_bend/v_bend.k", "mises", (1.0e-3, 2.2e-3, 4.0e-3), mirror=True, limits=(0.0, 450.0)),
     "press_fit": Scene("input/press_fit/press_fit.k", "mises", (-1,), inches=4.0, limits=(0.0, 180.0)),
+    "plate_hole": Scene("input/plate_hole/plate_hole.k", "stress:xx", (-1,), inches=6.0, label="stress along x, MPa", factor=1e-6,
+                        limits=(0.0, 300.0)),
     "tube": Scene("input/tube/tube.k", "plastic_strain", (5.0e-4, 1.25e-3, 2.5e-3), mirror=True),
     "penetration": Scene("input/penetration/penetration.k", "plastic_strain", (1.5e-5, 4.5e-5, 1.2e-4), mirror=True,
                          box=(-0.035, 0.035, -0.032, 0.05), limits=(0.0, 1.5)),

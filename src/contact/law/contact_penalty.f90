@@ -67,6 +67,10 @@ contains
       memory%slave_penalty = factor*softer_side(contact, model)
       memory%master_penalty = memory%slave_penalty
     end select
+    if (contact%penalty_unit /= penalty_per_node) then
+      memory%slave_penalty = contact%thickness*memory%slave_penalty
+      memory%master_penalty = contact%thickness*memory%master_penalty
+    end if
     ! Each pair of runs meets twice, either one being the slave once.
     if (contact%is_self) memory%slave_penalty = self_share*memory%slave_penalty
     memory%node_penalty = memory%slave_penalty*mean_length(contact%slave, model)

@@ -19,6 +19,7 @@ module deck_contacts_m
   use deck_control_m, only : control_cards, warn_of_explicit
   use deck_friction_m, only : default_friction_t, read_friction_rule, warn_of_unused
   use deck_loads_m, only : orient_pressures
+  use deck_plane_stress_m, only : set_contact_thickness
   use deck_overrides_m, only : check_words
   use deck_values_m, only : integer_of, real_of, has_field, location_of, refuse_duplicates
   use sorting_m, only : index_among, sorted_order
@@ -52,6 +53,8 @@ contains
     do i = 1, size(contacts)
       call build_surfaces(deck, body, model, contacts(i))
       model%contacts(i) = contacts(i)%contact
+      if (body%is_sound) call set_contact_thickness(deck, &
+        deck%blocks(contacts(i)%block)%keyword, model, model%contacts(i))
     end do
     if (body%is_sound) then
       if (model%erodes) call check_eroding_contacts(deck, contacts, model)

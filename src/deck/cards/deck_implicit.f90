@@ -169,7 +169,7 @@ contains
         else if (allocated(material%crush)) then
           reason = 'the law of a crushable foam'
         else if ((allocated(material%eos) .or. material%needs_eos) .and. .not. &
-          allocated(material%rubber)) then
+          (allocated(material%rubber) .or. material%is_plane_stress)) then
           reason = 'an equation of state'
         end if
         if (len(reason) > 0) call refuse(reason)

@@ -184,15 +184,22 @@ contains
     type(boundary_t), intent(in) :: outside
     logical, intent(in) :: is_uncertain(:)       !! (n_node) nodes whose edges are not checked
     type(model_t), intent(inout) :: model
-    integer :: i, reported_line
+    integer :: i, edge, reported_line
 
     reported_line = 0
     do i = 1, size(locations)
       associate (nodes => model%conditions%pressures(i)%nodes)
         if (any(is_uncertain(nodes))) cycle
-        if (find_edge(outside, nodes(1), nodes(2)) > 0) cycle
-        if (find_edge(outside, nodes(2), nodes(1)) > 0) then
-          nodes = nodes([2, 1])
+        edge = find_edge(outside, nodes(1), nodes(2))
+        if (edge == 0) then
+          edge = find_edge(outside, nodes(2), nodes(1))
+          if (edge > 0) nodes = nodes([2, 1])
+        end if
+        if (edge > 0) then
+          associate (part => model%parts(model%mesh%element_part(outside%elements(edge))))
+            if (part%section > 0) model%conditions%pressures(i)%scale = &
+              model%conditions%pressures(i)%scale*model%sections(part%section)%thickness
+          end associate
         else if (locations(i)%line /= reported_line) then
           reported_line = locations(i)%line
           call reject_field(deck, locations(i), ': nodes '//to_text(model%mesh%node_id(nodes(1))) &
@@ -347,8 +354,8 @@ contains
           if (part%material == 0) cycle
           if (allocated(model%materials(part%material)%eos) .or. &
             gives_pressure(model%materials(part%material))) call report_field(deck, card, 1, &
-            ': part '//to_text(part%id)//' has an equation of state, a rubber law or failure, ' &
-            //'for which this version has no stiffness damping')
+            ': part '//to_text(part%id)//' has plane stress, an equation of state, a rubber law ' &
+            //'or failure, for which this version has no stiffness damping')
           if (abs(part%stiffness_damping) > 0.0_wp) call report_field(deck, card, 1, &
             ': part '//to_text(part%id)//' has stiffness damping by another card too')
           if (model%materials(part%material)%is_rigid) cycle

@@ -117,6 +117,7 @@ contains
         found = row_comes(deck, cursor)
         call check_form(deck, card)
         section%id = integer_of(card, 'SECID')
+        call set_thickness(deck, card, thickness, section)
         section%is_full = integer_of(card, 'NIP') == 4
         section%is_axisymmetric = integer_of(card, 'ELFORM') == 15
         section%element_form = merge(form_full, form_one_point, section%is_full)
@@ -130,6 +131,28 @@ contains
     call map_defined(deck, a_section, 'SECID')
   end subroutine read_sections
 
+  !> T1 of plane stress, one thickness for all corners.
+  subroutine set_thickness(deck, card, thickness, section)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(in) :: card
+    type(card_t), intent(inout) :: thickness
+    type(section_t), intent(inout) :: section
+    character(2), parameter :: corners(3) = ['T2', 'T3', 'T4']
+    integer :: k
+
+    section%is_plane_stress = integer_of(card, 'ELFORM') == 12
+    section%thickness = 1.0_wp
+    if (.not. section%is_plane_stress) return
+    section%thickness = real_of(thickness, 'T1')
+    if (.not. section%thickness > 0.0_wp) call report_field(deck, thickness, 'T1', &
+      'is not the thickness of plane stress (more than 0)')
+    do k = 1, size(corners)
+      if (abs(real_of(thickness, corners(k))) > 0.0_wp .and. &
+        abs(real_of(thickness, corners(k)) - section%thickness) > 0.0_wp) call report_field(deck, &
+        thickness, corners(k), 'is not T1: plane stress has one thickness in a section')
+    end do
+  end subroutine set_thickness
+
   !> Check ELFORM.
   subroutine check_form(deck, card)
     type(deck_t), intent(inout) :: deck
@@ -137,17 +160,14 @@ contains
     character(:), allocatable :: message
 
     select case (integer_of(card, 'ELFORM'))
-    case (13, 15)
+    case (12, 13, 15)
       return
-    case (12)
-      message = 'is plane stress, which this version does not have; it has 13 (plane strain) ' &
-        //'and 15 (axisymmetric)'
     case (14)
       message = 'is axisymmetric and area weighted, which this version does not have; it has 15 ' &
         //'(axisymmetric, volume weighted)'
     case default
-      message = 'is not a 2D element form of this version; it has 13 (plane strain) and 15 ' &
-        //'(axisymmetric)'
+      message = 'is not a 2D element form of this version; it has 12 (plane stress), 13 (plane ' &
+        //'strain) and 15 (axisymmetric)'
     end select
     call report_field(deck, card, 'ELFORM', message)
   end subroutine check_form
@@ -225,7 +245,7 @@ contains
   subroutine set_formulation(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
-    character(*), parameter :: forms(2) = ['plane strain (ELFORM 13)', 'axisymmetry (ELFORM 15) ']
+    character(*), parameter :: forms(2) = ['a plane (ELFORM 12 or 13)', 'axisymmetry (ELFORM 15)  ']
     logical :: is_axisymmetric(size(model%parts)), is_known(size(model%parts))
     integer :: i, first
 

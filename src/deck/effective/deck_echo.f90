@@ -9,7 +9,7 @@ module deck_echo_m
   use deck_lines_m, only : deck_t, layout_marks
   use hardenings_m, only : hardening_t
   use history_tables_m, only : history_tables, n_table
-  use model_m, only : model_t
+  use model_m, only : model_t, is_sheet
   use parts_m, only : material_t
   use system_m, only : release_memory
   use walls_m, only : friction_sticks
@@ -25,6 +25,7 @@ contains
     type(model_t), intent(in) :: model
     character(*), intent(in) :: path
     type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
     integer :: n_element(size(model%parts))
     integer :: i
 
@@ -35,18 +36,21 @@ contains
     call write_log(log, 'deck: '//path)
     call write_log(log, 'title: '//model%controls%title)
     call write_log(log, 'mesh: '//to_text(model%mesh%n_node)//' nodes, ' &
-      //to_text(model%mesh%n_element)//' elements, '//trim(merge( &
-      'axisymmetric about x = 0, forces, masses and energies per radian', &
-      'plane strain, unit depth                                        ', model%is_axisymmetric)))
+      //to_text(model%mesh%n_element)//' elements, '//kind_of_bodies(model))
     if (model%is_axisymmetric) call write_log(log, 'axis: nodes at r = 0, ' &
       //'which are fixed in r: '//to_text(count(.not. model%mesh%coordinates(1, :) > 0.0_wp)) &
       //'; rigid bodies move along the axis only')
     do i = 1, size(model%parts)
       associate (part => model%parts(i))
-        call write_log(log, 'part '//to_text(part%id)//' "'//part%title//'": ' &
+        text = 'part '//to_text(part%id)//' "'//part%title//'": ' &
           //to_text(n_element(i))//' elements, section ' &
           //to_text(model%sections(part%section)%id)//', material ' &
-          //to_text(model%materials(part%material)%id))
+          //to_text(model%materials(part%material)%id)
+        if (model%sections(part%section)%is_plane_stress) text = text//', plane stress, ' &
+          //'thickness '//to_text(model%sections(part%section)%thickness) &
+          //trim(merge(' (follows its strain)', repeat(' ', 21), &
+          model%materials(part%material)%thins))
+        call write_log(log, text)
       end associate
     end do
     do i = 1, size(model%materials)
@@ -67,6 +71,17 @@ contains
       //to_text(model%curves(model%controls%dt_curve)%id))
     call echo_outputs(model, log)
   end subroutine echo_model
+
+  !> What forces, masses and energies stand for.
+  pure function kind_of_bodies(model) result(text)
+    type(model_t), intent(in) :: model
+    character(:), allocatable :: text
+
+    text = 'plane strain, unit depth'
+    if (model%is_axisymmetric) &
+      text = 'axisymmetric about x = 0, forces, masses and energies per radian'
+    if (is_sheet(model)) text = 'plane stress, forces, masses and energies of the thickness'
+  end function kind_of_bodies
 
   !> Write the intervals of states, histories and restart files to the log.
   subroutine echo_outputs(model, log)

@@ -44,6 +44,7 @@ module deck_schema_m
     'DRTOL a convergence tolerance', &
     'DRFCTR a relaxation factor', &
     'IDRFLG 0 (relaxation where a curve asks for it), 1 (in any case) or -999 (in no case)', &
+    'ISTUPD 0 (constant thickness) or 1 (the thickness of plane stress follows its strain)', &
     'CONTROL_BULK_VISCOSITY.TYPE a kind of bulk viscosity that this version has (1 standard)', &
     'QH,QM an hourglass coefficient (0 to 10; 0.05 to 0.15 are usual)', &
     'Q1,Q2 a coefficient of bulk viscosity (0 to 100; Q1 1.5 and Q2 0.06 are usual)', &

@@ -41,6 +41,12 @@ module deck_schema_tables_m
     //' EDTTL:fs=0.04 IDRFLG:i|0|1|-999', &
     'CONTROL_HOURGLASS o', &
     ' IHQ:i QH:f>=0<=10', &
+    'CONTROL_SHELL o', &
+    ' WRPANG:fs=20 ESORT:is IRNXX:is=-1 ISTUPD:i|0|1 THEORY:is=2 BWC:is=2 MITER:is=1 PROJ:is', &
+    ' ROTASCL:fs=1 INTGRD:is LAMSHT:is CSTYP6:is=1 THSHEL:is', &
+    ' PSTUPD:ir SIDT4TU:is CNTCO:is ITSFLG:is IRQUAD:is=3 WMODE:fs STRETCH:fs ICRQ:is', &
+    ' NFAIL1:is NFAIL4:is PSNFAIL:is KEEPCS:is DELFR:is DRCPSID:is DRCPRM:fs=1 INTPERR:is', &
+    ' DRCMTH:is LISPSID:is NLOCDT:is', &
     'CONTROL_BULK_VISCOSITY o', &
     ' Q1:f~1.5>=0<=100 Q2:f~0.06>=0<=100 TYPE:i=1|-1|0|1 BTYPE:iw TSTYPE:iw', &
     'CONTROL_CONTACT o', &
@@ -98,7 +104,7 @@ module deck_schema_tables_m
     ' PID:i>=1 SECID:i>=1 MID:i>=1 EOSID:i>=0 HGID:i>=0 GRAV:iw ADPOPT:iw TMID:iw', &
     'SECTION_SHELL t', &
     ' SECID:i>=1 ELFORM:i=2 SHRF:fs NIP:i|0|1|2|4 PROPT:fs QR_IRID:is ICOMP:ir SETYP:ir=1', &
-    ' T1:fs T2:fs T3:fs T4:fs NLOC:fs MAREA:fs IDOF:fs EDGSET:is', &
+    ' T1:f T2:f T3:f T4:f NLOC:fs MAREA:fs IDOF:fs EDGSET:is', &
     'HOURGLASS t', &
     ' HGID:i>=1 IHQ:i QM:f>=0<=10 IBQ:is Q1:f>=0<=100 Q2:f>=0<=100 QB_VDC:fs QW:fs', &
     'MAT_ELASTIC t', &

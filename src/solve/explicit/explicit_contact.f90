@@ -12,7 +12,7 @@ module explicit_contact_m
   use kinds_m, only : wp
   use law_state_m, only : energy_created, energy_lost, energy_limit_t
   use log_m, only : log_t, warn, write_log, to_text, percent
-  use model_m, only : model_t
+  use model_m, only : model_t, is_sheet
   use node_motion_m, only : leap_t, predict_velocity, solve_rigids, damping_of
   use rigid_state_m, only : rotation_terms, rotation_shift, velocity_of
   use state_m, only : state_t
@@ -160,7 +160,8 @@ contains
           ! Impact is plastic within the first row of elements.
           if (monitor%balance > 0.0_wp) call write_log(log, name//': impacts dissipated ' &
             //to_text(monitor%balance)//per_depth(model%controls%units, 'F L', &
-            model%is_axisymmetric)//', '//percent(monitor%balance, state%largest_energy) &
+            model%is_axisymmetric, is_sheet(model))//', ' &
+            //percent(monitor%balance, state%largest_energy) &
             //' of the largest energy so far; finer meshes lose less')
         else if (abs(monitor%balance) > noticed_share*state%largest_energy .and. state%cycle &
           > 0) then

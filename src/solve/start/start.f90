@@ -399,7 +399,8 @@ contains
             cycle
           end if
           share = 0.5_wp*model%materials(model%parts(k)%material)%density*((x(1, 3) - x(1, 1)) &
-            *(x(2, 4) - x(2, 2)) - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+            *(x(2, 4) - x(2, 2)) - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1))) &
+            *model%sections(model%parts(k)%section)%thickness
           sums(:, k) = sums(:, k) + share*[1.0_wp, sum(x(1, :corners))/corners, &
             sum(x(2, :corners))/corners]
         end associate
