@@ -84,7 +84,7 @@ contains
       else
         call update_stress(material, stress)
       end if
-      call judge(material, round, stress, search)
+      call update_strain(material, round, stress, search)
       if (.not. any(search%is_open)) exit
     end do
     elements%eos_state(place:place + chunk_size - 1) = stress%hzz
@@ -118,7 +118,7 @@ contains
   end subroutine set_strain
 
   !> Find sigma_zz and the next estimate; points whose law has failed carry nothing.
-  pure subroutine judge(material, round, stress, search)
+  pure subroutine update_strain(material, round, stress, search)
     type(material_t), intent(in) :: material
     integer, intent(in) :: round
     type(stress_chunk_t), intent(in) :: stress
@@ -150,7 +150,7 @@ contains
       change = max(-most_change, min(most_change, -rest/search%slope(i)))
       search%strain(i) = max(-most_strain, min(most_strain, search%strain(i) + change))
     end do
-  end subroutine judge
+  end subroutine update_strain
 
   !> Mean stress, which is (sigma_xx + sigma_yy)/3, and the work of the stress in the plane, per
   !> area and thickness of time zero.

@@ -26,6 +26,7 @@ from impact_decks import plates
 from meshes import Deck, grid
 from axisymmetric_decks import rings
 from test_contact_fineness import blow
+from test_plane_stress import strip
 from test_requests import wait_for
 from test_same_bits import anvil, everything
 
@@ -123,6 +124,7 @@ SCENES = {
     "friction, type 4": (lambda: collision(2, 4), 60, (3,), 2, "fs=0.3"),
     "one surface, type 5": (lambda: penetration(5, is_self=True, n=16), 330, (3,), 1),
     "elements that leave, type 5": (lambda: penetration(5, n=8), 330, (2,), 1),
+    "plane stress, elements that leave": (lambda: strip(4, "plastic"), 330, (2,), 1),
     "round, type 6": (lambda: rings(6), 60, (4,), 2),
     "mass that grows, type 7": (lambda: growing(7), 60, (2,), 1),
     "no contact, gravity": (settling, 60, (5,), 1),

@@ -6,7 +6,7 @@ module deck_plane_stress_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t, is_sheet
-  use parts_m, only : material_t, condensed_bulk, law_crushable_foam, spall_pressure
+  use parts_m, only : material_t, condensed_bulk, spall_pressure
   use deck_control_m, only : control_cards
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_material
@@ -65,7 +65,7 @@ contains
     character(:), allocatable :: reason
 
     reason = ''
-    if (material%law == law_crushable_foam) then
+    if (allocated(material%crush)) then
       reason = 'the law of a crushable foam'
     else if (material%needs_eos) then
       reason = 'an equation of state'
