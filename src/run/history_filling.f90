@@ -154,7 +154,8 @@ contains
     real(wp) :: a(2), b(2), length, depth
     integer :: i
 
-    depth = model%sections(model%parts(slot_part(model%layout, &
+    depth = 1.0_wp
+    if (size(section%elements) > 0) depth = model%sections(model%parts(slot_part(model%layout, &
       model%layout%element_slot(section%elements(1))))%section)%thickness
     do i = 1, size(section%edges, 2)
       a = position_of(model, state, section%edges(1, i))
