@@ -17,7 +17,9 @@ module deck_m
   use deck_control_m, only : read_controls, read_outputs, read_relaxation, read_ends
   use deck_curves_m, only : table_t, read_curves, read_systems
   use deck_erosion_m, only : read_erosions
+  use deck_functions_m, only : check_functions
   use deck_implicit_m, only : read_implicit, check_implicit
+  use deck_inertia_m, only : inertia_t, set_inertias
   use deck_loads_m, only : read_nodal_loads, read_rigid_loads, read_body_loads, read_pressures, &
     read_masses, read_global_damping, read_mass_damping, read_stiffness_damping, warn_of_bores
   use deck_material_m, only : read_materials, read_equations, set_pressure_moduli
@@ -28,6 +30,7 @@ module deck_m
   use deck_sets_m, only : read_sets, read_histories
   use deck_supports_m, only : read_supports, read_motions, read_common_motions
   use deck_velocity_m, only : read_velocities
+  use deck_transforms_m, only : read_transforms
   use deck_wall_m, only : read_walls
   use deck_report_m, only : emit_warnings, emit_errors, list_findings
   use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, a_curve, &
@@ -112,6 +115,7 @@ contains
     end if
     if (allocated(request%overrides)) call read_words(request%overrides, deck)
     call read_parameters(deck)
+    call read_transforms(deck)
     call edit_controls(deck)
     do i = 1, deck%n_block
       if (deck%blocks(i)%is_honoured) call check_empty(deck, i)
@@ -140,6 +144,7 @@ contains
     type(model_t), intent(inout) :: model
     type(table_t), allocatable :: tables(:)
     type(eos_t), allocatable :: equations(:)
+    type(inertia_t), allocatable :: inertias(:)
     logical, allocatable :: is_sound(:), fixed(:, :) !! (n_element), (2, n_node)
     integer, allocatable :: codes(:), owner(:)
     type(hourglass_t) :: hourglass
@@ -157,7 +162,7 @@ contains
     call read_materials(deck, tables, model)
     call read_equations(deck, equations)
     call read_sections(deck, model)
-    call read_parts(deck, hourglass, equations, model)
+    call read_parts(deck, hourglass, equations, model, inertias)
     call read_erosions(deck, erodes, step_line, model)
     call set_pressure_moduli(deck, equations, model)
     call set_plane_stress(deck, model)
@@ -167,6 +172,7 @@ contains
     call read_cross_sections(deck, model)
     if (model%controls%implicit%is_on) call check_implicit(deck, model)
     call make_rigids(deck, model, owner)
+    call set_inertias(deck, inertias, model)
     call read_supports(deck, codes, owner, model, fixed)
     call read_motions(deck, owner, fixed, model)
     call read_nodal_loads(deck, model)
@@ -184,6 +190,7 @@ contains
     allocate (model%mesh%deck_node(model%mesh%n_node))
     model%mesh%deck_node = [(i, i=1, model%mesh%n_node)]
     call read_contacts(deck, kinds, locations, is_sound, body, model)
+    call check_functions(deck, model)
     call read_relaxation(deck, model)
     call read_ends(deck, model, body%is_sound)
   end subroutine read_model
@@ -219,7 +226,8 @@ contains
           block%is_honoured = .true.
           block%name = name(:len(block%name))
           select case (block%name)
-          case ('KEYWORD', 'END', 'COMMENT', 'INCLUDE', 'INCLUDE_PATH')
+          case ('KEYWORD', 'END', 'COMMENT', 'INCLUDE', 'INCLUDE_PATH', 'INCLUDE_TRANSFORM', &
+            'DEFINE_TRANSFORMATION')
             block%dropped = .true.
           end select
         case (known_ignored)

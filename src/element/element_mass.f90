@@ -8,6 +8,7 @@ module element_mass_m
   use layout_m, only : slot_part
   use mesh_m, only : mesh_t
   use model_m, only : model_t
+  use rigids_m, only : rigid_t
   use quad_points_m, only : n_point, point_areas, shape_at_points
   use sparse_m, only : sparse_t, add_block
   implicit none
@@ -150,7 +151,48 @@ contains
         end do
       end associate
     end do
+    do i = 1, size(model%rigids)
+      if (.not. model%rigids(i)%has_inertia) cycle
+      associate (body => model%rigids(i))
+        mass(body%nodes) = given_masses(body, model%mesh%coordinates(:, body%nodes), &
+          mass(body%nodes))
+      end associate
+    end do
   end subroutine lump_mass
+
+  !> Masses m_a (w_1 + w_2 x_a + w_3 y_a + w_4 r_a^2) at the nodes of a rigid body, x and y from the
+  !> centre of mass, that have its mass, centre of mass and moment of inertia; -1 where there are
+  !> none.
+  pure function given_masses(body, positions, mass) result(given)
+    type(rigid_t), intent(in) :: body
+    real(wp), intent(in) :: positions(:, :), mass(:) !! (2, n), (n) of its nodes
+    real(wp) :: given(size(mass))
+    real(wp) :: terms(4, size(mass)), gram(4, 5), length, largest
+    integer :: i, k
+
+    terms(1, :) = 1.0_wp
+    terms(2:3, :) = positions - spread(body%given_centre, 2, size(mass))
+    length = maxval(abs(terms(2:3, :)))
+    terms(2:3, :) = terms(2:3, :)/length
+    terms(4, :) = terms(2, :)**2 + terms(3, :)**2
+    do i = 1, 4
+      do k = 1, 4
+        gram(k, i) = sum(mass*terms(i, :)*terms(k, :))
+      end do
+    end do
+    gram(:, 5) = [body%given_mass, 0.0_wp, 0.0_wp, body%given_moment/length**2]
+    largest = gram(1, 1)
+    given = -1.0_wp
+    ! Elimination: the matrix is symmetric and positive definite.
+    do i = 1, 4
+      if (.not. gram(i, i) > 1.0e-10_wp*largest) return
+      gram(i, :) = gram(i, :)/gram(i, i)
+      do k = 1, 4
+        if (k /= i) gram(k, :) = gram(k, :) - gram(k, i)*gram(i, :)
+      end do
+    end do
+    given = mass*matmul(gram(:, 5), terms)
+  end function given_masses
 
   !> Masses at the four nodes of the element in a slot, from its density; 0 at the fourth node of a
   !> triangle.

@@ -14,6 +14,7 @@ module curves_m
     real(wp), allocatable :: ordinate(:)   !! same length
     integer :: phase = 0                   !! SIDR: 0 run, 1 dynamic relaxation, 2 both
     logical :: is_of_time = .true.         !! false for curves of materials
+    logical :: is_function = .false.       !! sampled up to the end time of the deck
   contains
     procedure :: visit => visit_curve
   end type curve_t
@@ -85,6 +86,7 @@ contains
     call visitor%visit('ordinate', self%ordinate, any_length)
     call visitor%visit('phase', self%phase)
     call visitor%visit('is_of_time', self%is_of_time)
+    call visitor%visit('is_function', self%is_function)
   end subroutine visit_curve
 
 end module curves_m

@@ -15,6 +15,10 @@ module rigids_m
     logical :: is_fixed(3) = .false.  !! x, y and rotation about z (CON1 and CON2 of *MAT_RIGID)
     logical :: has_velocity = .false. !! *INITIAL_VELOCITY_RIGID_BODY gives `velocity`
     real(wp) :: velocity(3) = 0.0_wp  !! of the centre of mass, m/s, and angular velocity, 1/s
+    logical :: has_inertia = .false.  !! *PART_INERTIA gives `velocity` and:
+    real(wp) :: given_mass = 0.0_wp   !! kg/m
+    real(wp) :: given_centre(2) = 0.0_wp
+    real(wp) :: given_moment = 0.0_wp !! about the centre of mass, kg m
   contains
     procedure :: visit => visit_rigid
   end type rigid_t
@@ -44,6 +48,10 @@ contains
     call visitor%plain(c_loc(self%is_fixed), storage_size(self%is_fixed), size(self%is_fixed))
     call visitor%visit('has_velocity', self%has_velocity)
     call visitor%fixed('velocity', self%velocity)
+    call visitor%visit('has_inertia', self%has_inertia)
+    call visitor%visit('given_mass', self%given_mass)
+    call visitor%fixed('given_centre', self%given_centre)
+    call visitor%visit('given_moment', self%given_moment)
   end subroutine visit_rigid
 
 end module rigids_m

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Rigid walls: fixed planes that nodes cannot penetrate.
+!> Rigid walls: planes that nodes cannot penetrate, fixed or moving along their normal.
 module walls_m
   use kinds_m, only : wp
   use visitor_m, only : visited_t, visitor_t
@@ -10,7 +10,7 @@ module walls_m
   !> FRIC of a wall without sliding.
   real(wp), parameter :: friction_sticks = 1.0_wp
 
-  !> One *RIGIDWALL_PLANAR.
+  !> One *RIGIDWALL_PLANAR, with _MOVING one that moves along its normal.
   type, extends(visited_t) :: wall_t
     integer :: id = 0                        !! user id, or assigned by the deck layer
     real(wp) :: point(2) = 0.0_wp             !! a point of the wall (tail)
@@ -18,6 +18,8 @@ module walls_m
     real(wp) :: friction = 0.0_wp            !! coefficient of friction, or `friction_sticks`
     real(wp) :: birth = 0.0_wp               !! birth time, s
     real(wp) :: death = 1.0e20_wp            !! death time, s
+    real(wp) :: mass = 0.0_wp                !! of a moving wall, kg/m; 0: fixed
+    real(wp) :: velocity = 0.0_wp            !! along the normal at time zero, m/s
     integer, allocatable :: nodes(:)         !! indices of its nodes
     integer, allocatable :: node_index(:)    !! (n_special) index in `nodes`, 0 = not in it
   contains
@@ -56,6 +58,8 @@ contains
     call visitor%visit('friction', self%friction)
     call visitor%visit('birth', self%birth)
     call visitor%visit('death', self%death)
+    call visitor%visit('mass', self%mass)
+    call visitor%visit('velocity', self%velocity)
     call visitor%visit('nodes', self%nodes)
     call visitor%visit('node_index', self%node_index)
   end subroutine visit_wall

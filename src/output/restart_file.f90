@@ -28,7 +28,7 @@ module restart_file_m
 
   !> Format of the file. To be raised when a component of the state is added, removed or changes its
   !> meaning, and when nodes or elements get another order.
-  integer, parameter :: format_version = 26
+  integer, parameter :: format_version = 27
   character(*), parameter :: mark = 'slideline restart '
   !> Bytes of the head, and of a block that is read.
   integer, parameter :: head_size = 512, block_size = 65536

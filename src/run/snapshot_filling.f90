@@ -3,7 +3,6 @@
 !> instant: v(n) = v(n-1/2) + a(n) dt/2.
 module snapshot_filling_m
   use kinds_m, only : wp, long
-  use block_state_m, only : block_state_t
   use coupled_nodes_m, only : fill_coupled_nodes
   use loads_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows
@@ -238,9 +237,9 @@ contains
   end subroutine add_motion
 
   !> Fill kinetic energy, momentum and mass of each part, where velocities are stored.
-  subroutine fill_parts(model, elements, snapshot)
+  subroutine fill_parts(model, state, snapshot)
     type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
+    type(state_t), intent(in) :: state
     type(snapshot_t), intent(inout) :: snapshot
     real(wp) :: shares(4), v(2)
     integer :: i, k, slot, i_part
@@ -255,12 +254,26 @@ contains
       i_part = slot_part(model%layout, slot)
       associate (nodes => model%layout%slot_nodes(:, slot), part => snapshot%parts(i_part))
         shares = element_shares(model, slot)
-        if (allocated(elements%mass_ratio)) shares = elements%mass_ratio(slot)*shares
+        if (allocated(state%elements%mass_ratio)) shares = state%elements%mass_ratio(slot)*shares
         do k = 1, merge(3, 4, nodes(4) == nodes(3))
           v = snapshot%velocity(:, nodes(k))
           part%kinetic = part%kinetic + 0.5_wp*shares(k)*(v(1)**2 + v(2)**2)
           part%momentum = part%momentum + shares(k)*v
           part%mass = part%mass + shares(k)
+        end do
+      end associate
+    end do
+    ! *PART_INERTIA: masses of nodes, not of elements.
+    do i = 1, size(model%rigids)
+      if (.not. model%rigids(i)%has_inertia) cycle
+      associate (nodes => model%rigids(i)%nodes, part => snapshot%parts(model%rigids(i)%part))
+        part%kinetic = 0.0_wp
+        part%momentum = 0.0_wp
+        part%mass = sum(state%mass(nodes))
+        do k = 1, size(nodes)
+          v = snapshot%velocity(:, nodes(k))
+          part%kinetic = part%kinetic + 0.5_wp*state%mass(nodes(k))*(v(1)**2 + v(2)**2)
+          part%momentum = part%momentum + state%mass(nodes(k))*v
         end do
       end associate
     end do

@@ -37,6 +37,8 @@ module state_m
                                            !! force on each node, N/m
     real(wp), allocatable :: slip_speed(:) !! (as `friction`) tangential velocity before the force,
                                            !! m/s
+    real(wp) :: velocity = 0.0_wp     !! of the wall along its normal, v(n-1/2)
+    real(wp) :: displacement = 0.0_wp !! of the wall along its normal, u(n)
     real(wp) :: impulse = 0.0_wp      !! accumulated normal impulse, N s/m
     real(wp) :: work = 0.0_wp         !! accumulated work on the nodes, J/m; negative: dissipated by
                                       !! impacts and friction
@@ -207,6 +209,8 @@ contains
 
     call visitor%visit('force', self%force)
     call visitor%visit('speed', self%speed)
+    call visitor%visit('velocity', self%velocity)
+    call visitor%visit('displacement', self%displacement)
     call visitor%visit('impulse', self%impulse)
     call visitor%visit('work', self%work)
     call visitor%visit('friction', self%friction)

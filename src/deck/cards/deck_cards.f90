@@ -7,6 +7,7 @@ module deck_cards_m
   use text_m, only : read_integer, read_real, number_good
   use deck_lines_m, only : deck_t, location_t, line_text, line_error, line_warning, replace_line, &
     flag_blank, flag_comma, flag_parameter, block_of_line, given_by, format_long, max_field
+  use deck_offsets_m, only : move_card, move_heading
   use deck_fields_m, only : card_spec_t, make_spec, field_number, card_t, begin_card, cut_card, &
     cut_text, read_numbers, field_text, field_error
   use deck_schema_m, only : table, keyword_cards, refusal_reason, expectations, &
@@ -143,13 +144,15 @@ contains
   !> Read a title line with an optional number in columns 1 to 10 (0: none), then a name. In the
   !> long layout the number has 20 columns; a number in the first ten is accepted there too.
   subroutine next_heading(deck, cursor, number, name)
-    type(deck_t), intent(in) :: deck
+    type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
     integer, intent(out) :: number
     character(:), allocatable, intent(out) :: name
     character(:), allocatable :: text
     integer :: width, status
 
+    if (deck%sources(cursor%source)%is_moved .and. cursor%line <= cursor%last) call move_heading( &
+      deck, cursor%block, cursor%line)
     call next_text(deck, cursor, text)
     do width = merge(20, 10, deck%blocks(cursor%block)%layout == format_long), 10, -10
       name = trim(adjustl(text(min(width, len(text)) + 1:)))
@@ -251,6 +254,8 @@ contains
         call cut_card(deck, spec, cursor%source, cursor%line, card)
         card%bad = bad
       end if
+      if (deck%sources(cursor%source)%is_moved) call move_card(deck, spec, &
+        trim(deck%blocks(cursor%block)%name), cursor%source, card)
       call read_numbers(deck, spec, cursor%source, card)
       do k = 1, spec%n
         if (spec%treatments(k) == 'h' .or. card%blank(k)) cycle

@@ -89,7 +89,7 @@ contains
   !> Read title and number of an interface or transducer; the default number is its position in the
   !> deck.
   subroutine read_number(deck, entry, cursor)
-    type(deck_t), intent(in) :: deck
+    type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(inout) :: entry
     type(cursor_t), intent(out) :: cursor         !! at the first card
 

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> *DEFINE_CURVE, *DEFINE_TABLE and *DEFINE_COORDINATE_SYSTEM (axes in the plane).
+!> *DEFINE_CURVE, *DEFINE_CURVE_FUNCTION, *DEFINE_TABLE and *DEFINE_COORDINATE_SYSTEM (axes in the
+!> plane).
 module deck_curves_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -10,6 +11,7 @@ module deck_curves_m
   use deck_fields_m, only : field_number, card_t
   use deck_cards_m, only : cursor_t, first_card, next_row, report_field, next_card, &
     check_rest
+  use deck_functions_m, only : read_function
   use deck_values_m, only : integer_of, real_of, reals_of, define, map_defined
   implicit none
   private
@@ -44,14 +46,19 @@ contains
       call first_card(deck, blocks(i), cursor, head)
       call define(deck, a_curve, head, n)
       of_block(blocks(i)) = n
-      scale = reals_of(head, 'SFA', 'SFO')
-      scale(1) = abs(scale(1)) ! a negative one has been refused
-      call read_rows(deck, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
-        'is not beyond the point before it: abscissas must increase', cursor, points)
-      if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
+      if (deck%blocks(blocks(i))%name == 'DEFINE_CURVE') then
+        scale = reals_of(head, 'SFA', 'SFO')
+        scale(1) = abs(scale(1)) ! a negative one has been refused
+        call read_rows(deck, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
+          'is not beyond the point before it: abscissas must increase', cursor, points)
+        if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
+      else
+        call read_function(deck, cursor, head, points)
+      end if
       if (size(points, 2) == 0) points = reshape([0.0_wp, 0.0_wp], [2, 1])
       if (n == 0) cycle
       curves(n)%phase = integer_of(head, 'SIDR')
+      curves(n)%is_function = deck%blocks(blocks(i))%name == 'DEFINE_CURVE_FUNCTION'
       curves(n)%id = integer_of(head, 'LCID')
       curves(n)%abscissa = points(1, :)
       curves(n)%ordinate = points(2, :)

@@ -15,6 +15,7 @@ module deck_part_m
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
     next_of, row_comes, report_field, reject_field
   use deck_values_m, only : integer_of, real_of, is_blank, is_bad, define, map_defined, find_id
+  use deck_inertia_m, only : inertia_t, read_inertia
   use deck_material_m, only : assign_equation
   implicit none
   private
@@ -23,11 +24,12 @@ module deck_part_m
 contains
 
   !> *PART: a heading and a card for each part. Sections and materials have been read.
-  subroutine read_parts(deck, default, equations, model)
+  subroutine read_parts(deck, default, equations, model, inertias)
     type(deck_t), intent(inout) :: deck
     type(hourglass_t), intent(in) :: default     !! of parts that name no control of their own
     type(eos_t), intent(in) :: equations(:)
     type(model_t), intent(inout) :: model
+    type(inertia_t), allocatable, intent(out) :: inertias(:) !! of *PART_INERTIA
     type(hourglass_t), allocatable :: hourglasses(:)
     type(part_t), allocatable :: parts(:)
     type(part_t) :: part
@@ -39,7 +41,7 @@ contains
     call read_hourglasses(deck, default, hourglasses)
     equation_of = spread(-1, 1, size(model%materials))
     blocks = blocks_of(deck, 'PART')
-    allocate (parts(count_rows(deck, 'PART')))
+    allocate (parts(count_rows(deck, 'PART')), inertias(0))
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
       do
@@ -53,6 +55,8 @@ contains
           exit
         end if
         call define(deck, a_part, card, n)
+        if (deck%blocks(blocks(i))%name == 'PART_INERTIA') call read_inertia(deck, cursor, n, &
+          inertias)
         if (n == 0) cycle
         part%id = integer_of(card, 'PID')
         call find_id(deck, a_section, card, 'SECID', part%section)

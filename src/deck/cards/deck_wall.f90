@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> *RIGIDWALL_PLANAR, and the nodes of each wall.
+!> *RIGIDWALL_PLANAR, _MOVING, and the nodes of each wall.
 module deck_wall_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -50,7 +50,7 @@ contains
     type(model_t), intent(in) :: model
     type(wall_t), intent(inout) :: wall
     type(cursor_t) :: cursor
-    type(card_t) :: card, plane_card
+    type(card_t) :: card, plane_card, mass_card
     character(:), allocatable :: title
     logical :: is_tracked(model%mesh%n_node)
     integer :: k
@@ -59,6 +59,11 @@ contains
     if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, wall%id, title)
     call next_card(deck, cursor, 1, card)
     call next_card(deck, cursor, 2, plane_card)
+    if (deck%blocks(i_block)%name == 'RIGIDWALL_PLANAR_MOVING') then
+      call next_card(deck, cursor, 3, mass_card)
+      wall%mass = real_of(mass_card, 'MASS')
+      wall%velocity = real_of(mass_card, 'V0')
+    end if
     call check_rest(deck, cursor)
     call read_active_time(deck, card, ['BIRTH', 'DEATH'], wall%birth, wall%death)
     call read_plane(deck, plane_card, wall)

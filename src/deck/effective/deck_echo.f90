@@ -240,7 +240,7 @@ contains
   subroutine echo_walls(model, log)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
-    character(:), allocatable :: sliding
+    character(:), allocatable :: sliding, moving
     integer :: i
 
     do i = 1, size(model%walls)
@@ -248,10 +248,13 @@ contains
         sliding = 'without sliding'
         if (wall%friction < friction_sticks) sliding = 'with friction '//to_text(wall%friction)
         if (.not. wall%friction > 0.0_wp) sliding = 'without friction'
+        moving = ''
+        if (wall%mass > 0.0_wp) moving = ', moves with the mass '//to_text(wall%mass) &
+          //' and at first the velocity '//to_text(wall%velocity)//' along its normal'
         call write_log(log, 'wall '//to_text(wall%id)//': through ('//to_text(wall%point(1))//', ' &
           //to_text(wall%point(2))//'), normal ('//to_text(wall%normal(1))//', ' &
           //to_text(wall%normal(2))//'), '//to_text(size(wall%nodes))//' nodes, plastic impact ' &
-          //sliding)
+          //sliding//moving)
       end associate
     end do
   end subroutine echo_walls

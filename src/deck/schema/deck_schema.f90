@@ -98,6 +98,8 @@ module deck_schema_m
     'NUMFIP a number of integration points (1 to 4)', &
     'EOS_GRUNEISEN.C a bulk sound speed (above 0, at most 1e12)', &
     'V0 an initial relative volume of this version (0 or 1: bodies start at the density RO)', &
+    'TM,RIGIDWALL.MASS a mass', &
+    'IZZ a moment of inertia', &
     'CMO 0 (no constraints) or 1 (constraints in global axes)', &
     'NIP a number of points (0, 1, 2 or blank: one point; 4: two by two, full integration)', &
     'SIDR a phase (0 run, 1 dynamic relaxation, 2 both)', &
@@ -155,6 +157,7 @@ module deck_schema_m
     'CID,ICID,VID,ID is a local coordinate system', &
     'TF lets the constraint fail, which this version does not have; leave it blank', &
     'CIDL gives the points in another system', &
+    'FCTMAS,FCTTIM,FCTLEN,FCTTEM asks for other units in the included file', &
     'SRC,SRP asks for a Cowper-Symonds strain rate effect, which MAT_024 has (C and P); leave it ' &
     //'0 here', &
     'TDEL,DTF,TEROD,CEROD,CHARL,NUMINT asks for deletion of elements', &

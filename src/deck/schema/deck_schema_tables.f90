@@ -16,6 +16,15 @@ module deck_schema_tables_m
     ' PATH:a80', &
     'INCLUDE_PATH', &
     ' PATH:a80', &
+    'INCLUDE_TRANSFORM', &
+    ' PATH:a80', &
+    ' IDNOFF:i>=0 IDEOFF:i>=0 IDPOFF:i>=0 IDMOFF:i>=0 IDSOFF:i>=0 IDFOFF:i>=0 IDDOFF:i>=0', &
+    ' IDROFF:i>=0 PREFIX:aw SUFFIX:aw', &
+    ' FCTMAS:fr=1 FCTTIM:fr=1 FCTLEN:fr=1 FCTTEM:ar INCOUT1:iw', &
+    ' TRANID:i>=0', &
+    'DEFINE_TRANSFORMATION t', &
+    ' TRANID:i>=1', &
+    ' OPTION:a A1:f A2:f A3:f A4:f A5:f A6:f A7:f', &
     'PARAMETER o', &
     ' PRMR1:a VAL1:a PRMR2:a VAL2:a PRMR3:a VAL3:a PRMR4:a VAL4:a', &
     'PARAMETER_LOCAL o =PARAMETER', &
@@ -102,6 +111,13 @@ module deck_schema_tables_m
     'PART tr', &
     ' HEADING:a80', &
     ' PID:i>=1 SECID:i>=1 MID:i>=1 EOSID:i>=0 HGID:i>=0 GRAV:iw ADPOPT:iw TMID:iw', &
+    'PART_INERTIA r', &
+    ' HEADING:a80', &
+    ' PID:i>=1 SECID:i>=1 MID:i>=1 EOSID:i>=0 HGID:i>=0 GRAV:iw ADPOPT:iw TMID:iw', &
+    ' XC:f YC:f ZC:fs TM:f>0<=1e30 IRCS:i|0|1 NODEID:i>=0', &
+    ' IXX:fs IXY:fs IXZ:fs IYY:fs IYZ:fs IZZ:f>0<=1e30', &
+    ' VTX:f VTY:f VTZ:fw VRX:fw VRY:fw VRZ:f', &
+    ' XL:fs YL:fs ZL:fs XLIP:fs YLIP:fs ZLIP:fs CID:is', &
     'SECTION_SHELL t', &
     ' SECID:i>=1 ELFORM:i=2 SHRF:fs NIP:i|0|1|2|4 PROPT:fs QR_IRID:is ICOMP:ir SETYP:ir=1', &
     ' T1:f T2:f T3:f T4:f NLOC:fs MAREA:fs IDOF:fs EDGSET:is', &
@@ -164,6 +180,9 @@ module deck_schema_tables_m
     'DEFINE_CURVE t', &
     ' LCID:i>=1 SIDR:i|0|1|2 SFA:f=1>=0 SFO:f=1 OFFA:f OFFO:f DATTYP:is LCINT:is', &
     ' A1:f20 O1:f20', &
+    'DEFINE_CURVE_FUNCTION t', &
+    ' LCID:i>=1 SIDR:i|0', &
+    ' FUNCTION:a80', &
     'DEFINE_COORDINATE_SYSTEM t', &
     ' CID:i>=1 XO:f YO:f ZO:f XL:f YL:f ZL:f CIDL:ir', &
     ' XP:f YP:f ZP:f', &
@@ -248,6 +267,10 @@ module deck_schema_tables_m
     'RIGIDWALL_PLANAR t', &
     ' NSID:i>=0 NSIDEX:i>=0 BOXID:ir OFFSET:f>=0 BIRTH:f DEATH:f=1e20 RWKSF:fs=1', &
     ' XT:f YT:f ZT:f XH:f YH:f ZH:f FRIC:f WVEL:fr', &
+    'RIGIDWALL_PLANAR_MOVING t', &
+    ' NSID:i>=0 NSIDEX:i>=0 BOXID:ir OFFSET:f>=0 BIRTH:f DEATH:f=1e20 RWKSF:fs=1', &
+    ' XT:f YT:f ZT:f XH:f YH:f ZH:f FRIC:f WVEL:fr', &
+    ' MASS:f>0<=1e30 V0:f', &
     'DAMPING_GLOBAL r', &
     ' LCID:i>=0 VALDMP:f>=0 STX:f>=0 STY:f>=0 STZ:fs SRX:fs SRY:fs SRZ:fs', &
     'DAMPING_PART_MASS r', &

@@ -25,22 +25,25 @@ module deck_expression_m
     integer :: at = 1                    !! next character
     integer :: depth = 0
     integer :: source = 0                !! file of the expression
+    real(wp), allocatable :: time        !! value of TIME, where the expression has one
     character(:), allocatable :: message !! first error
   end type scanner_t
 
 contains
 
-  !> Value of `text`; `trouble` is allocated when there is none.
-  subroutine evaluate(text, parameters, source, value, message)
+  !> Value of `text`; `message` is allocated when there is none.
+  subroutine evaluate(text, parameters, source, value, message, time)
     character(*), intent(in) :: text
     type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: source !! file of the text
     real(wp), intent(out) :: value
     character(:), allocatable, intent(out) :: message
+    real(wp), intent(in), optional :: time !! value of TIME
     type(scanner_t) :: scanner
 
     scanner%text = trim(upper_case(text))//' '
     scanner%source = source
+    if (present(time)) scanner%time = time
     call parse_terms(scanner, parameters, 1, value)
     if (accept(scanner, '')) continue
     if (scanner%at < len(scanner%text)) &
@@ -193,7 +196,9 @@ contains
     word = scanner%text(scanner%at:scanner%at + n - 1)
     scanner%at = scanner%at + n
     i = find_parameter(parameters, word, scanner%source, .true.)
-    if (i > 0) then
+    if (allocated(scanner%time) .and. word == 'TIME') then
+      value = scanner%time
+    else if (i > 0) then
       call read_real(parameters%items(i)%text, value, status)
     else if (word == 'PI') then
       value = pi
@@ -248,6 +253,10 @@ contains
     select case (word)
     case ('MIN', 'MAX', 'MOD', 'SIGN', 'ATAN2')
       if (n < 2) call set_error(scanner, word//' needs two arguments')
+    case ('STEP')
+      if (n /= 5) call set_error(scanner, 'STEP takes five arguments')
+    case ('IF')
+      if (n /= 4) call set_error(scanner, 'IF takes four arguments')
     case default
       if (n /= 1) call set_error(scanner, word//' takes one argument')
     end select
@@ -260,6 +269,7 @@ contains
     character(*), intent(in) :: word
     real(wp), intent(in) :: a(:)
     real(wp), intent(out) :: value
+    real(wp) :: s
 
     call ieee_set_halting_mode(ieee_all, .false.)
     value = 0.0_wp
@@ -284,6 +294,12 @@ contains
     case ('SIGN'); value = sign(a(1), a(2))
     case ('MIN'); value = minval(a)
     case ('MAX'); value = maxval(a)
+    case ('IF'); value = merge(a(2), merge(a(4), a(3), a(1) > 0.0_wp), a(1) < 0.0_wp)
+    case ('STEP')
+      ! From h0 before x0 to h1 after x1, by a polynomial of third degree.
+      if (.not. a(4) > a(2)) call set_error(scanner, 'STEP(x, x0, h0, x1, h1) needs x1 above x0')
+      s = min(max((a(1) - a(2))/max(a(4) - a(2), tiny(s)), 0.0_wp), 1.0_wp)
+      value = a(3) + (a(5) - a(3))*s**2*(3.0_wp - 2.0_wp*s)
     case default
       call set_error(scanner, 'there is no function '//word)
     end select

@@ -7,15 +7,18 @@ module deck_ids_m
   private
   public :: id_map_t, map_ids, index_of, ids_between, n_kind, kind_names, a_node, an_element, &
     a_part, a_section, a_material, an_eos, an_hourglass, a_curve, a_table, a_node_set, a_part_set, &
-    a_segment_set, a_shell_set, a_system, a_box
+    a_segment_set, a_shell_set, a_system, a_box, &
+    a_transformation
 
   !> Kinds of entities with user ids.
-  integer, parameter :: n_kind = 15, a_node = 1, an_element = 2, a_part = 3, a_section = 4, &
+  integer, parameter :: n_kind = 16, a_node = 1, an_element = 2, a_part = 3, a_section = 4, &
     a_material = 5, an_eos = 6, an_hourglass = 7, a_curve = 8, a_table = 9, a_node_set = 10, &
-    a_part_set = 11, a_segment_set = 12, a_shell_set = 13, a_system = 14, a_box = 15
+    a_part_set = 11, a_segment_set = 12, a_shell_set = 13, a_system = 14, a_box = 15, &
+    a_transformation = 16
   character(17), parameter :: kind_names(n_kind) = [character(17) :: 'node', 'element', 'part', &
     'section', 'material', 'equation of state', '*HOURGLASS', 'curve', 'table', 'node set', &
-    'part set', 'segment set', 'shell set', 'coordinate system', 'box']
+    'part set', 'segment set', 'shell set', 'coordinate system', 'box', &
+    'transformation']
 
   !> Map of one kind of entity.
   type :: id_map_t

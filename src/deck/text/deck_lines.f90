@@ -9,6 +9,7 @@ module deck_lines_m
   use deck_report_m, only : report_t, finding_t, add_error, add_warning
   use deck_ids_m, only : id_map_t, n_kind
   use deck_parameter_table_m, only : parameters_t
+  use deck_schema_ids_m, only : n_offset
   use kinds_m, only : wp
   use log_m, only : to_text
   implicit none
@@ -17,14 +18,16 @@ module deck_lines_m
     line_text, order_line, block_of_line, where_text, line_error, &
     line_warning, replace_line, written_text, line_finding, shown_text, marked_line, &
     layout_marks, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
-    format_i10, flag_comma, flag_parameter, flag_blank, max_source, max_field
+    format_i10, flag_comma, flag_parameter, flag_blank, flag_moved, max_source, &
+    max_field
 
   !> Column layout of a block.
   integer, parameter :: format_standard = 0, format_long = 1, format_i10 = 2
   !> Marks of the layouts on a keyword line.
   character(2), parameter :: layout_marks(0:2) = ['  ', ' +', ' %']
   !> Bits of `flags`.
-  integer(int8), parameter :: flag_comma = 1_int8, flag_parameter = 2_int8, flag_blank = 4_int8
+  integer(int8), parameter :: flag_comma = 1_int8, flag_parameter = 2_int8, flag_blank = 4_int8, &
+    flag_moved = 8_int8
   !> Maximum number of files of a deck, and of fields of a card.
   integer, parameter :: max_source = 1000, max_field = 16
 
@@ -34,6 +37,12 @@ module deck_lines_m
     character(:), allocatable :: text
     integer :: parent = 0                !! including file, 0 for the deck itself
     integer :: layout = format_standard  !! of its *KEYWORD line, or of the including file
+    integer :: block = 0                 !! that includes it
+    logical :: is_moved = .false.        !! by *INCLUDE_TRANSFORM: offsets of numbers, ...
+    integer :: offsets(n_offset) = 0
+    logical :: is_transformed = .false.  !! ... and nodes: x -> turn x + shift
+    logical :: is_turned = .false.       !! turn is not 1
+    real(wp) :: turn(2, 2) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 2]), shift(2) = 0.0_wp
   end type source_t
 
   !> One keyword with its data lines (without comments, with blank lines).

@@ -7,8 +7,8 @@ module deck_reader_m
   use files_m, only : is_directory, is_endless
   use log_m, only : to_text
   use text_m, only : upper_case
-  use deck_lines_m, only : deck_t, block_t, line_text, line_error, shown_text, max_source, &
-    flag_comma, flag_parameter, flag_blank, format_standard, format_long, format_i10
+  use deck_lines_m, only : deck_t, block_t, line_text, line_error, block_of_line, shown_text, &
+    max_source, flag_comma, flag_parameter, flag_blank, format_standard, format_long, format_i10
   implicit none
   private
   public :: read_file, cut_deck, scan_line, open_block, add_line, file_options
@@ -112,15 +112,16 @@ contains
     i_block = deck%n_block
     if (deck%blocks(i_block)%source /= source .or. deck%blocks(i_block)%dropped) return
     if (all(deck%blocks(i_block)%name /= ['INCLUDE              ', 'INCLUDE_PATH         ', &
-      'INCLUDE_PATH_RELATIVE'])) return
+      'INCLUDE_PATH_RELATIVE', 'INCLUDE_TRANSFORM    '])) return
     deck%blocks(i_block)%dropped = .true.
     line = deck%blocks(i_block)%first
     if (deck%blocks(i_block)%last < line) call line_error(deck, line - 1, 'a file name is missing')
     do while (line <= deck%blocks(i_block)%last)
       call join_name(deck, i_block, line, name)
       if (len(name) == 0) cycle
-      if (deck%blocks(i_block)%name == 'INCLUDE') then
+      if (index(deck%blocks(i_block)%name, 'INCLUDE_PATH') == 0) then
         call include_file(deck, source, folders, name, line - 1)
+        if (deck%blocks(i_block)%name /= 'INCLUDE') exit ! the rest are cards
       else
         folders = folders//name//new_line('a')
       end if
@@ -185,6 +186,7 @@ contains
     deck%n_source = i
     deck%sources(i)%path = path
     deck%sources(i)%parent = source
+    deck%sources(i)%block = block_of_line(deck, line)
     deck%sources(i)%layout = deck%sources(source)%layout
     call read_file(path, deck%sources(i)%text, reason)
     if (.not. allocated(reason)) then

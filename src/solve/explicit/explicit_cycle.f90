@@ -39,7 +39,7 @@ module explicit_cycle_m
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use quiescent_tiles_m, only : tile_states_t, plan_tile_states, update_tile_states
-  use node_constraints_m, only : move_coupled_nodes, add_wall_work
+  use node_constraints_m, only : move_coupled_nodes, add_wall_work, move_walls
   use state_m, only : state_t
   use time_step_m, only : step_plan_t, volume_step, next_step, limit_approach, &
     is_last, update_spring_bounds, cycles_in, has_springs
@@ -281,7 +281,10 @@ contains
     end if
     if (allocated(cycle%common)) call move_coupled_nodes(model, cycle%leap, cycle%damping, &
       cycle%common, state)
-    if (allocated(state%walls)) call add_wall_work(model, [.not. cycle%writes, .true.], state)
+    if (allocated(state%walls)) then
+      call add_wall_work(model, [.not. cycle%writes, .true.], state)
+      call move_walls(model, state, cycle%error)
+    end if
     if (size(state%rigids) > 0) then
       if (.not. cycle%writes) call solve_rigids(model, cycle%damping, state)
       call add_body_motion_work(model, cycle%damping, [.not. cycle%writes, .true.], state)

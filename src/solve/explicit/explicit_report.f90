@@ -183,8 +183,7 @@ contains
     if (cycle%due%tables(table_glstat)) call complete_balance(model, state, cycle%damping, &
       cycle%velocity, monitor%snapshot)
     call record_energies(model, follows, state, monitor)
-    if (cycle%due%tables(table_matsum)) call fill_parts(model, state%elements, &
-      monitor%snapshot)
+    if (cycle%due%tables(table_matsum)) call fill_parts(model, state, monitor%snapshot)
     if (cycle%due%tables(table_glstat)) then
       call find_slowest(model, state, monitor%snapshot)
       cycle%ratio = energy_ratio(monitor%snapshot%energies)

@@ -1,19 +1,23 @@
 ! SPDX-License-Identifier: MIT
 !> Constraints of special nodes that no inverse mass of x or y expresses: skew supports, coupled
 !> nodes, and rigid walls with perfectly plastic impact. A node that would cross a wall in the
-!> coming step gets the normal velocity that takes it to the wall (zero if it is behind), and the
-!> wall the corresponding force at t(n). The tangential force stops the node, at most friction
-!> coefficient times normal force.
+!> coming step gets the normal velocity that takes it to the wall (that of the wall if it is
+!> behind), and the wall the corresponding force at t(n). The tangential force stops the node, at
+!> most friction coefficient times normal force. A moving wall has the velocity v(n-1/2) for its
+!> nodes, and v(n+1/2) from the sum of their forces.
 module node_constraints_m
   use coupled_nodes_m, only : coupled_acceleration
+  use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
+  use log_m, only : to_text
   use model_m, only : model_t
   use node_motion_m, only : leap_t, predict_velocity
   use state_m, only : state_t
   use walls_m, only : wall_t, wall_distance, wall_tangent, friction_sticks
   implicit none
   private
-  public :: apply_skew_supports, move_coupled_nodes, apply_walls, add_wall_work, wall_work_ahead
+  public :: apply_skew_supports, move_coupled_nodes, apply_walls, add_wall_work, move_walls, &
+    wall_work_ahead
 
   !> Largest number of iterations over the walls at one node (two walls at right angles need one).
   integer, parameter :: most_rounds = 40
@@ -101,8 +105,11 @@ contains
           k = model%walls(i)%node_index(node)
           if (k == 0) cycle
           associate (wall => model%walls(i), force => state%walls(i)%force(k))
-            more = wall_force_increment(wall, state%time, leap%dt, model%mesh%coordinates(:, &
-              node), state%motion(1:2, node), velocity, mobility, force)
+            more = 0.0_wp
+            if (state%time >= wall%birth .and. state%time < wall%death) more = &
+              wall_force_increment(wall, state%walls(i)%velocity - max(0.0_wp, wall_distance( &
+              wall, model%mesh%coordinates(:, node), state%motion(1:2, node)) &
+              - state%walls(i)%displacement)/leap%dt, velocity, mobility, force)
             force = force + more
             call push(more, wall%normal, force)
             if (.not. wall%friction > 0.0_wp) cycle
@@ -132,22 +139,18 @@ contains
 
   !> Increment of the normal force of a wall that keeps the node from crossing it; the total force
   !> stays compressive.
-  pure function wall_force_increment(wall, time, dt, coordinates, displacement, velocity, &
-    mobility, force) result(more)
+  pure function wall_force_increment(wall, least, velocity, mobility, force) result(more)
     type(wall_t), intent(in) :: wall
-    real(wp), intent(in) :: time, dt
-    real(wp), intent(in) :: coordinates(2), displacement(2)
+    real(wp), intent(in) :: least        !! normal velocity that takes the node to the wall
     real(wp), intent(in) :: velocity(2)  !! with the forces so far
     real(wp), intent(in) :: mobility(2)  !! velocity from a force of 1
     real(wp), intent(in) :: force        !! of the wall so far
     real(wp) :: more
-    real(wp) :: gain, least
+    real(wp) :: gain
 
     more = 0.0_wp
     gain = dot_product(wall%normal**2, mobility)
-    if (.not. gain > 0.0_wp .or. time < wall%birth .or. time >= wall%death) return
-    least = -max(0.0_wp, wall_distance(wall, coordinates, displacement))/dt
-    more = max((least - dot_product(wall%normal, velocity))/gain, -force)
+    if (gain > 0.0_wp) more = max((least - dot_product(wall%normal, velocity))/gain, -force)
   end function wall_force_increment
 
   !> Increment of the friction of a wall that stops the node, limited by the normal force.
@@ -215,6 +218,31 @@ contains
     end function work_along
 
   end subroutine add_wall_work
+
+  !> Move the walls by the sum of the forces on their nodes: M (v(n+1/2) - v(n-1/2)) = -h sum F. The
+  !> nodes have met v(n-1/2): v(n+1/2) swings where they are heavier than the wall, an error.
+  subroutine move_walls(model, state, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp) :: touching
+    integer :: i
+
+    do i = 1, size(state%walls)
+      associate (wall => model%walls(i), memory => state%walls(i))
+        if (.not. wall%mass > 0.0_wp) cycle
+        touching = sum(state%mass(wall%nodes), mask=memory%force > 0.0_wp)
+        if (touching >= wall%mass .and. .not. allocated(error)) call raise(error, 'wall ' &
+          //to_text(wall%id)//' of mass '//to_text(wall%mass)//' touches nodes of mass ' &
+          //to_text(touching)//' at time '//to_text(state%time)//'; a moving wall must be ' &
+          //'heavier than the nodes that it touches: refine the mesh there, or let it be a ' &
+          //'rigid body in contact (*MAT_RIGID)', status_run)
+        memory%velocity = memory%velocity - 0.5_wp*(state%dt_before + state%dt) &
+          *sum(memory%force)/wall%mass
+        memory%displacement = memory%displacement + state%dt*memory%velocity
+      end associate
+    end do
+  end subroutine move_walls
 
   !> Part of the wall work on one node that belongs to the half step after t(n), friction included.
   pure function wall_work_ahead(model, node, state) result(work)

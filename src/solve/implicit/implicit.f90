@@ -327,7 +327,7 @@ contains
       shot%energies%kinetic = 0.5_wp*sum(shot%velocity*mass_times(model, shot%velocity))
       call record_energies(model, .true., state, monitor)
       if (due%tables(table_matsum)) then
-        call fill_parts(model, state%elements, shot)
+        call fill_parts(model, state, shot)
         call sum_part_motion(model, shot%velocity, kinetic, momentum)
         shot%parts%kinetic = kinetic
         shot%parts%momentum(1) = momentum(1, :)

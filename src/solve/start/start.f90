@@ -52,6 +52,8 @@ contains
       call move_alloc(remote%mass, state%mass)
     else
       call lump_mass(model, state%mass)
+      call check_given_masses(model, state%mass, error)
+      if (allocated(error)) return
       call log_masses(model, log)
     end if
     if (any(abs(model%parts%stiffness_damping) > 0.0_wp)) &
@@ -158,6 +160,7 @@ contains
     if (n > 0) allocate (state%walls(n))
     do i = 1, n
       associate (wall => model%walls(i), memory => state%walls(i))
+        memory%velocity = wall%velocity
         allocate (memory%force(size(wall%nodes)), memory%speed(size(wall%nodes)), source=0.0_wp)
         allocate (memory%friction(merge(size(wall%nodes), 0, wall%friction > 0.0_wp)), &
           source=0.0_wp)
@@ -210,7 +213,7 @@ contains
           rigid%velocity(3) = sum(mass*(rigid%arms(1, :)*(v(2, :) - rigid%velocity(2)) &
             - rigid%arms(2, :)*(v(1, :) - rigid%velocity(1))))/rigid%inertia(3)
         end associate
-        if (body%has_velocity) rigid%velocity = body%velocity
+        if (body%has_velocity .or. body%has_inertia) rigid%velocity = body%velocity
         ! Fixed degrees of freedom are at rest, prescribed velocities start with their first value.
         where (body%is_fixed) rigid%velocity = 0.0_wp
         do k = 1, size(model%conditions%rigid_motions)
@@ -231,6 +234,26 @@ contains
     end do
     call share_contact_mass(model, state)
   end subroutine start_rigids
+
+  !> Check that the nodes of each body of *PART_INERTIA have masses above 0.
+  subroutine check_given_masses(model, mass, error)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: mass(:)     !! (n_node)
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i
+
+    do i = 1, size(model%rigids)
+      associate (body => model%rigids(i))
+        if (.not. body%has_inertia .or. all(mass(body%nodes) > 0.0_wp)) cycle
+        call raise(error, 'rigid part '//to_text(model%parts(body%part)%id)//': no masses above ' &
+          //'0 at its nodes have the mass '//to_text(body%given_mass)//', centre of mass ' &
+          //to_text(body%given_centre(1))//', '//to_text(body%given_centre(2))//' and moment of ' &
+          //'inertia '//to_text(body%given_moment)//' of *PART_INERTIA; the mesh must reach ' &
+          //'about as far as the body, in more than one element', status_input)
+        return
+      end associate
+    end do
+  end subroutine check_given_masses
 
   !> Mass, centre and second moments of a set of lumped masses.
   pure subroutine set_body_inertia(positions, mass, rigid)

@@ -183,7 +183,35 @@ def check_restart(run):
                  (folder / f"dumped.{name}.csv").read_bytes() == whole.csv_path(name).read_bytes())
 
 
+def check_moving(run):
+    """A wall of mass M runs at V into a bar at rest: V falls as exp(-rho c H t/M) until the wave is back."""
+    mass, end = 0.6 * MASS, 0.9 * CONTACT
+    deck, dt, _ = bar(angle=0.4, end=end)
+    text = deck.text().replace("*RIGIDWALL_PLANAR_ID", "*RIGIDWALL_PLANAR_MOVING_ID")
+    blocks = text.split("*")
+    blocks = [block for block in blocks if not block.startswith("INITIAL_VELOCITY")]
+    k = next(k for k, block in enumerate(blocks) if block.startswith("RIGIDWALL"))
+    blocks[k] = blocks[k].rstrip("\n") + f"\n{mass!r},{SPEED!r}\n"
+    text = "*".join(blocks)
+    result = run.program(text, name="moving")
+    force, momentum = result.table("rwforc"), result.table("matsum")
+    expected = mass * SPEED * (1.0 - np.exp(-RHO * WAVE * HEIGHT * end / mass))
+    run.check("impulse of a moving wall", force["impulse"][-1], expected)
+    along = momentum["momentum_x"] * np.cos(0.4) + momentum["momentum_y"] * np.sin(0.4)
+    run.check("momentum goes from the wall to the bar", along[-1], force["impulse"][-1])
+    run.check("energy ratio with a moving wall", result.table("glstat")["energy_ratio"][1:], np.ones(len(along) - 1))
+    dumped = run.program(text.replace("*END", f"*DATABASE_BINARY_D3DUMP\n{int(0.4 * end / dt)}\n*END"), name="moving_dumped")
+    folder = run.work / "moving_goes_on"
+    folder.mkdir()
+    finished = subprocess.run([str(run.program_path), f"r={dumped.folder / 'moving_dumped.dump01.h5'}", f"d={folder}"],
+                              capture_output=True, text=True, timeout=600)
+    run.true("the run with a moving wall goes on", finished.returncode == 0)
+    run.true("rwforc of a moving wall is the same to the bit",
+             (folder / "moving_dumped.rwforc.csv").read_bytes() == result.csv_path("rwforc").read_bytes())
+
+
 def check(run):
+    check_moving(run)
     check_order(run, check_bar(run, "bar", 0.0, (0.0, 0.0)))
     check_bar(run, "bar at an oblique wall", np.radians(37.0), (0.3, -0.2))
     check_touching(run)

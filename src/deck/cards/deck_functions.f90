@@ -1,0 +1,142 @@
+! SPDX-License-Identifier: MIT
+!> *DEFINE_CURVE_FUNCTION: a function of TIME, which becomes a curve of many points.
+module deck_functions_m
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use model_m, only : model_t
+  use deck_cards_m, only : cursor_t, first_card, next_text
+  use deck_expression_m, only : evaluate
+  use deck_fields_m, only : card_t
+  use deck_ids_m, only : a_curve
+  use deck_lines_m, only : deck_t, blocks_of, line_error
+  use deck_report_m, only : report_t
+  use deck_values_m, only : real_of
+  implicit none
+  private
+  public :: read_function, check_functions
+
+  !> Largest difference from the function, as part of its largest value, and largest number of
+  !> points.
+  real(wp), parameter :: tolerance = 1.0e-8_wp
+  integer, parameter :: most_points = 1000000
+  !> Intervals to begin with.
+  integer, parameter :: n_first = 64
+
+contains
+
+  !> Read the lines of the expression, and sample it from time 0 to the end time.
+  subroutine read_function(deck, cursor, head, points)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(inout) :: cursor
+    type(card_t), intent(in) :: head
+    real(wp), allocatable, intent(out) :: points(:, :) !! (2, n), none where there is an error
+    character(:), allocatable :: text, line, message
+    real(wp) :: end_time
+
+    text = ''
+    do while (cursor%line <= cursor%last)
+      call next_text(deck, cursor, line)
+      text = text//line
+    end do
+    allocate (points(2, 0))
+    if (len_trim(text) == 0) return
+    end_time = end_time_of(deck)
+    if (end_time > 0.0_wp) call sample(deck, text, cursor%source, end_time, points, message)
+    if (.not. allocated(message)) return
+    call line_error(deck, min(head%line + 1, cursor%last), 'the function cannot be computed: ' &
+      //message)
+    points = reshape([0.0_wp, 0.0_wp], [2, 1])
+  end subroutine read_function
+
+  !> Points between which the function differs from a straight line by the tolerance at most, found
+  !> by halving intervals.
+  subroutine sample(deck, text, source, end_time, points, message)
+    type(deck_t), intent(in) :: deck
+    character(*), intent(in) :: text
+    integer, intent(in) :: source
+    real(wp), intent(in) :: end_time
+    real(wp), allocatable, intent(inout) :: points(:, :)
+    character(:), allocatable, intent(out) :: message
+    real(wp), allocatable :: middle(:, :), merged(:, :)
+    logical, allocatable :: is_open(:), next_open(:)  !! intervals to be halved further
+    real(wp) :: largest
+    integer :: i, n
+
+    points = reshape([(i*end_time/n_first, 0.0_wp, i=0, n_first)], [2, n_first + 1])
+    do i = 1, n_first + 1
+      call value_at(points(:, i))
+    end do
+    allocate (is_open(n_first), source=.true.)
+    do while (any(is_open) .and. .not. allocated(message))
+      if (size(points, 2) + count(is_open) > most_points) message = 'it needs more than ' &
+        //to_text(most_points)//' points up to the end time '//to_text(end_time)
+      if (allocated(message)) return
+      largest = maxval(abs(points(2, :)))
+      allocate (middle(2, size(is_open)), merged(2, size(points, 2) + count(is_open)))
+      allocate (next_open(size(merged, 2) - 1), source=.false.)
+      n = 0
+      do i = 1, size(is_open)
+        n = n + 1
+        merged(:, n) = points(:, i)
+        if (.not. is_open(i)) cycle
+        middle(:, i) = 0.5_wp*(points(:, i) + points(:, i + 1))
+        n = n + 1
+        merged(1, n) = middle(1, i)
+        call value_at(merged(:, n))
+        next_open(n - 1:n) = abs(merged(2, n) - middle(2, i)) > tolerance*max(largest, &
+          abs(merged(2, n))) .and. middle(1, i) - points(1, i) > tolerance*end_time
+      end do
+      merged(:, n + 1) = points(:, size(points, 2))
+      call move_alloc(merged, points)
+      call move_alloc(next_open, is_open)
+      deallocate (middle)
+    end do
+
+  contains
+
+    !> Evaluate the function at the abscissa of a point.
+    subroutine value_at(point)
+      real(wp), intent(inout) :: point(2)
+      character(:), allocatable :: reason
+
+      call evaluate(text, deck%parameters, source, point(2), reason, point(1))
+      if (allocated(reason) .and. .not. allocated(message)) message = reason//' (at TIME ' &
+        //to_text(point(1))//')'
+    end subroutine value_at
+
+  end subroutine sample
+
+  !> ENDTIM, whose errors are reported when the card is read for the run; 0 where there is none.
+  function end_time_of(deck) result(end_time)
+    type(deck_t), intent(inout) :: deck
+    real(wp) :: end_time
+    type(report_t) :: report
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    integer, allocatable :: blocks(:)
+
+    end_time = 0.0_wp
+    blocks = blocks_of(deck, 'CONTROL_TERMINATION')
+    if (size(blocks) == 0) return
+    report = deck%report
+    call first_card(deck, blocks(size(blocks)), cursor, card)
+    deck%report = report
+    if (.not. any(card%bad)) end_time = real_of(card, 'ENDTIM')
+  end function end_time_of
+
+  !> Report functions of time as curves of materials.
+  subroutine check_functions(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(in) :: model
+    integer :: i
+
+    do i = 1, size(model%curves)
+      associate (curve => model%curves(i))
+        if (curve%is_function .and. .not. curve%is_of_time) call line_error(deck, &
+          deck%maps(a_curve)%lines(i), 'a material uses this function of TIME; give it a ' &
+          //'*DEFINE_CURVE')
+      end associate
+    end do
+  end subroutine check_functions
+
+end module deck_functions_m
