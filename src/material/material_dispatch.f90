@@ -5,7 +5,7 @@ module material_dispatch_m
   use layout_m, only : chunk_size
   use parts_m, only : material_t, law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
     law_hot_johnson_cook, law_null, has_memory_of_heat, law_mooney_rivlin, law_blatz_ko, &
-    law_crushable_foam
+    law_crushable_foam, law_viscoelastic
   use stress_chunk_m, only : stress_chunk_t, stress_point_t
   use material_crushable_foam_m, only : update_crushable_foam
   use material_elastic_m, only : update_elastic, update_null
@@ -13,6 +13,7 @@ module material_dispatch_m
   use material_johnson_cook_m, only : update_johnson_cook
   use material_piecewise_m, only : update_piecewise, tangent_piecewise
   use material_rubber_m, only : update_mooney_rivlin, update_blatz_ko
+  use material_viscoelastic_m, only : update_viscoelastic
   implicit none
   private
   public :: update_stress, form_tangent, history_size, find_failed, &
@@ -36,7 +37,7 @@ contains
       n = merge(1, 4, has_no_back_stress(material))
     case (law_piecewise, law_johnson_cook, law_crushable_foam)
       n = 1
-    case (law_hot_johnson_cook)
+    case (law_hot_johnson_cook, law_viscoelastic)
       n = 3
     case default
       n = 0
@@ -49,9 +50,10 @@ contains
     character(:), allocatable :: name
     character(24), parameter :: names(*) = [character(24) :: 'elastic', 'elastic-plastic', &
       'piecewise linear plastic', 'Johnson-Cook', 'crushable foam', 'heated Johnson-Cook', &
-      'fluid', 'Mooney-Rivlin rubber', 'Blatz-Ko rubber']
+      'fluid', 'Mooney-Rivlin rubber', 'Blatz-Ko rubber', 'viscoelastic']
     integer, parameter :: laws(*) = [law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
-      law_crushable_foam, law_hot_johnson_cook, law_null, law_mooney_rivlin, law_blatz_ko]
+      law_crushable_foam, law_hot_johnson_cook, law_null, law_mooney_rivlin, law_blatz_ko, &
+      law_viscoelastic]
 
     name = 'rigid'
     if (.not. material%is_rigid) name = trim(names(findloc(laws, material%law, dim=1)))
@@ -66,12 +68,14 @@ contains
     yes = material%poisson > 0.4_wp .or. history_size(material) > 0 .or. allocated(material%eos)
   end function has_mean_dilatation
 
-  !> Whether the history of a law starts with a plastic strain.
+  !> Whether the history of a law starts with a plastic strain; that of foam has the mean stress,
+  !> that of viscoelasticity the overstress.
   pure function has_plastic_strain(material) result(yes)
     type(material_t), intent(in) :: material
     logical :: yes
 
-    yes = history_size(material) > 0 .and. material%law /= law_crushable_foam
+    yes = history_size(material) > 0 .and. all(material%law /= [law_crushable_foam, &
+      law_viscoelastic])
   end function has_plastic_strain
 
   !> Whether a law is linear elasticity with the pressure K ln(J).
@@ -127,6 +131,8 @@ contains
       call update_blatz_ko(material%rubber, chunk)
     case (law_crushable_foam)
       call update_crushable_foam(material, chunk, history(:, 1))
+    case (law_viscoelastic)
+      call update_viscoelastic(material, chunk, history(:, 1), history(:, 2), history(:, 3))
     end select
     if (may_break) call fail(material%failure_strain, before, chunk, history(:, 1))
   end subroutine update_stress

@@ -12,7 +12,7 @@ module parts_m
   public :: part_t, section_t, material_t, hourglass_t, has_memory_of_heat, &
     may_fail, gives_pressure, law_mooney_rivlin, law_blatz_ko, law_crushable_foam, &
     form_one_point, form_full, form_axisym_one_point, form_axisym_full, law_elastic, law_plastic, &
-    law_piecewise, law_johnson_cook, law_hot_johnson_cook, law_null, &
+    law_piecewise, law_johnson_cook, law_hot_johnson_cook, law_null, law_viscoelastic, &
     hourglass_viscous, hourglass_stiffness, hourglass_assumed, spall_pressure, spall_stress, &
     spall_tension, johnson_cook_t, rubber_t, mooney_rivlin, blatz_ko, blatz_ko_poisson, &
     erosion_t, asks_for_strain, asks_for_stress, condensed_bulk
@@ -23,7 +23,7 @@ module parts_m
   !> Material laws, known to the material dispatcher only.
   integer, parameter :: law_elastic = 1, law_plastic = 2, law_piecewise = 3, &
     law_johnson_cook = 4, law_crushable_foam = 5, law_hot_johnson_cook = 6, law_null = 7, &
-    law_mooney_rivlin = 8, law_blatz_ko = 9
+    law_mooney_rivlin = 8, law_blatz_ko = 9, law_viscoelastic = 10
   !> Meaning of the pressure cut-off (SPALL): bound of the tension; tensile stress at failure;
   !> tension at failure.
   integer, parameter :: spall_pressure = 1, spall_stress = 2, spall_tension = 3
@@ -107,6 +107,8 @@ module parts_m
     real(wp) :: hardening = 0.0_wp !! plastic modulus E_p = E Et/(E - Et)
     real(wp) :: beta = 1.0_wp      !! 1 isotropic, 0 kinematic, between mixed
     real(wp) :: viscosity = 0.0_wp !! dynamic viscosity of a fluid, Pa s
+    real(wp) :: long_shear = 0.0_wp !! viscoelastic: shear modulus after a long time
+    real(wp) :: decay = -1.0_wp    !! viscoelastic: decay constant, 1/s; below 0: it is not
     type(hardening_t), allocatable :: curve !! piecewise linear yield stress
     type(johnson_cook_t), allocatable :: flow !! constants of Johnson and Cook
     type(rubber_t), allocatable :: rubber !! hyperelastic constants
@@ -243,6 +245,8 @@ contains
     call visitor%visit('hardening', self%hardening)
     call visitor%visit('beta', self%beta)
     call visitor%visit('viscosity', self%viscosity)
+    call visitor%visit('long_shear', self%long_shear)
+    call visitor%visit('decay', self%decay)
     if (visitor%makes(merge(1, absent, allocated(self%curve)))) allocate (self%curve)
     if (allocated(self%curve)) call visitor%part('curve', self%curve)
     if (visitor%makes(merge(1, absent, allocated(self%flow)))) allocate (self%flow)

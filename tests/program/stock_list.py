@@ -20,7 +20,7 @@ DEFAULTS = (
 #: What the deck `unsupported` asks for and the program does not have: keyword, and field where the
 #: keyword itself is known.
 UNSUPPORTED = (
-    ("MAT_POWER_LAW_PLASTICITY", ""), ("MAT_VISCOELASTIC", ""),
+    ("MAT_POWER_LAW_PLASTICITY", ""), ("MAT_KELVIN_MAXWELL_VISCOELASTIC", ""),
     ("EOS_JWL", ""), ("SECTION_SOLID", ""), ("SECTION_BEAM", ""), ("ELEMENT_BEAM", ""),
     ("ELEMENT_SOLID", ""), ("CONSTRAINED_NODAL_RIGID_BODY", ""),
     ("CONSTRAINED_EXTRA_NODES_SET", ""), ("BOUNDARY_NON_REFLECTING_2D", ""), ("BOUNDARY_TEMPERATURE_SET", ""),

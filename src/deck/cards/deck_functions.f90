@@ -39,6 +39,7 @@ contains
       text = text//line
     end do
     allocate (points(2, 0))
+    if (len_trim(text) == 0) call line_error(deck, head%line, 'the function is missing')
     if (len_trim(text) == 0) return
     end_time = end_time_of(deck)
     if (end_time > 0.0_wp) call sample(deck, text, cursor%source, end_time, points, message)

@@ -166,6 +166,8 @@ contains
           reason = 'a flow stress of Johnson and Cook'
         else if (material%failure_strain < huge(1.0_wp)) then
           reason = 'a plastic strain at failure'
+        else if (material%decay >= 0.0_wp) then
+          reason = 'the law of viscoelasticity'
         else if (allocated(material%crush)) then
           reason = 'the law of a crushable foam'
         else if ((allocated(material%eos) .or. material%needs_eos) .and. .not. &

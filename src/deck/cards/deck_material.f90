@@ -4,7 +4,7 @@ module deck_material_m
   use kinds_m, only : wp
   use model_m, only : model_t
   use parts_m, only : material_t, law_elastic, law_plastic, law_null, law_crushable_foam, &
-    law_mooney_rivlin, law_blatz_ko, mooney_rivlin, blatz_ko, blatz_ko_poisson
+    law_mooney_rivlin, law_blatz_ko, law_viscoelastic, mooney_rivlin, blatz_ko, blatz_ko_poisson
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
   use deck_fields_m, only : card_t
@@ -77,6 +77,8 @@ contains
         end if
       case ('MAT_CRUSHABLE_FOAM')
         call read_crushable_foam(deck, card, model, material)
+      case ('MAT_VISCOELASTIC')
+        call read_viscoelastic(deck, card, material)
       case ('MAT_RIGID')
         call read_rigid(deck, cursor, material)
       end select
@@ -169,6 +171,27 @@ contains
     material%eos = eos_t(kind=eos_by_law, stiffness=material%bulk)
     material%sound_speed = sqrt((material%bulk + 4.0_wp*material%shear/3.0_wp)/material%density)
   end subroutine set_moduli
+
+  !> *MAT_VISCOELASTIC: bulk modulus, shear moduli at first and after a long time, decay constant.
+  subroutine read_viscoelastic(deck, card, material)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    type(material_t), intent(inout) :: material
+
+    material%law = law_viscoelastic
+    material%bulk = real_of(card, 'BULK')
+    material%shear = real_of(card, 'G0')
+    material%long_shear = real_of(card, 'GI')
+    material%decay = real_of(card, 'BETA')
+    if (material%long_shear > material%shear) call report_field(deck, card, 'GI', &
+      'is above G0 "'//to_text(material%shear)//'": the modulus falls from G0 to GI')
+    if (any(card%bad)) return
+    associate (bulk => material%bulk, shear => material%shear)
+      material%poisson = (3.0_wp*bulk - 2.0_wp*shear)/(2.0_wp*(3.0_wp*bulk + shear))
+      material%young = 9.0_wp*bulk*shear/(3.0_wp*bulk + shear)
+      material%sound_speed = sqrt((bulk + 4.0_wp*shear/3.0_wp)/material%density)
+    end associate
+  end subroutine read_viscoelastic
 
   !> *MAT_RIGID: CMO, CON1 and CON2.
   subroutine read_rigid(deck, cursor, material)

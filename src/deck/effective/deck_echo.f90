@@ -185,6 +185,8 @@ contains
     end if
     if (allocated(material%rubber)) text = text//', rubber A '//to_text(material%rubber%a) &
       //', B '//to_text(material%rubber%b)//' (moduli of small strain)'
+    if (material%decay >= 0.0_wp) text = text//', viscoelastic, from this G to ' &
+      //to_text(material%long_shear)//' with the decay constant '//to_text(material%decay)
     if (allocated(material%crush)) text = text//', crush curve ' &
       //to_text(material%crush%id)//', tensile cut-off '//to_text(material%tension)
     if (material%cutoff > -huge(1.0_wp)) text = text//', pressure cut-off ' &

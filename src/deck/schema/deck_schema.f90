@@ -83,7 +83,9 @@ module deck_schema_m
     'MAT_MOONEY-RIVLIN.PR a Poisson''s ratio of this law (more than 0 and less than 0.5; 0.49 ' &
     //'and more is usual)', &
     'PR a Poisson''s ratio', &
-    'G a shear modulus', &
+    'G,G0,GI a shear modulus', &
+    'BULK a bulk modulus', &
+    'MAT_VISCO.BETA a decay constant', &
     'MAT_PLASTIC.SIGY,MAT_JOHNSON.A,MAT_SIMPLIFIED.A a yield stress', &
     'MAT_PLASTIC.BETA between 0 (kinematic) and 1 (isotropic hardening)', &
     'MAT_PLASTIC.FS,MAT_ELASTIC.FS,FAIL a plastic strain at failure (0 or more; 0 means never)', &
@@ -124,6 +126,7 @@ module deck_schema_m
   character(42), parameter :: aliases(*) = [character(42) :: &
     'MAT_001 MAT_ELASTIC', &
     'MAT_003 MAT_PLASTIC_KINEMATIC', &
+    'MAT_006 MAT_VISCOELASTIC', &
     'MAT_007 MAT_BLATZ-KO_RUBBER', &
     'MAT_009 MAT_NULL', &
     'MAT_010 MAT_ELASTIC_PLASTIC_HYDRO', &

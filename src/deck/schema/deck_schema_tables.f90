@@ -151,6 +151,9 @@ module deck_schema_tables_m
     'MAT_SIMPLIFIED_JOHNSON_COOK t', &
     ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 VP:f|0|1', &
     ' A:f>0 B:f>=0 N:f>=0 C:f>=0 PSFAIL:f=1e17>=0 SIGMAX:f=1e28 SIGSAT:f=1e28 EPSO:f=1>0', &
+    'MAT_VISCOELASTIC t', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 BULK:f>=1e-30<=1e30 G0:f>=1e-30<=1e30 GI:f>=0<=1e30' &
+    //' BETA:f>=0<=1e30', &
     'MAT_MOONEY-RIVLIN_RUBBER t', &
     ' MID:i>=1 RO:f>=1e-30<=1e30 PR:f>0<0.5 A:f>=0<=1e30 B:f>=0<=1e30 REF:fr', &
     ' SGL:fr SW:fr ST:fr LCID:ir', &
