@@ -5,12 +5,13 @@ module material_dispatch_m
   use layout_m, only : chunk_size
   use parts_m, only : material_t, law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
     law_hot_johnson_cook, law_null, has_memory_of_heat, law_mooney_rivlin, law_blatz_ko, &
-    law_crushable_foam, law_viscoelastic
+    law_crushable_foam, law_viscoelastic, law_ogden
   use stress_chunk_m, only : stress_chunk_t, stress_point_t
   use material_crushable_foam_m, only : update_crushable_foam
   use material_elastic_m, only : update_elastic, update_null
   use material_j2_m, only : update_j2_isotropic, update_j2_mixed, tangent_of_return
   use material_johnson_cook_m, only : update_johnson_cook
+  use material_ogden_m, only : update_ogden
   use material_piecewise_m, only : update_piecewise, tangent_piecewise
   use material_rubber_m, only : update_mooney_rivlin, update_blatz_ko
   use material_viscoelastic_m, only : update_viscoelastic
@@ -50,10 +51,11 @@ contains
     character(:), allocatable :: name
     character(24), parameter :: names(*) = [character(24) :: 'elastic', 'elastic-plastic', &
       'piecewise linear plastic', 'Johnson-Cook', 'crushable foam', 'heated Johnson-Cook', &
-      'fluid', 'Mooney-Rivlin rubber', 'Blatz-Ko rubber', 'viscoelastic']
+      'fluid', 'Mooney-Rivlin rubber', 'Blatz-Ko rubber', 'viscoelastic', &
+      'Ogden rubber']
     integer, parameter :: laws(*) = [law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
       law_crushable_foam, law_hot_johnson_cook, law_null, law_mooney_rivlin, law_blatz_ko, &
-      law_viscoelastic]
+      law_viscoelastic, law_ogden]
 
     name = 'rigid'
     if (.not. material%is_rigid) name = trim(names(findloc(laws, material%law, dim=1)))
@@ -129,6 +131,8 @@ contains
       call update_mooney_rivlin(material%rubber, chunk)
     case (law_blatz_ko)
       call update_blatz_ko(material%rubber, chunk)
+    case (law_ogden)
+      call update_ogden(material%rubber, chunk)
     case (law_crushable_foam)
       call update_crushable_foam(material, chunk, history(:, 1))
     case (law_viscoelastic)

@@ -12,7 +12,7 @@ module parts_m
   public :: part_t, section_t, material_t, hourglass_t, has_memory_of_heat, &
     may_fail, gives_pressure, law_mooney_rivlin, law_blatz_ko, law_crushable_foam, &
     form_one_point, form_full, form_axisym_one_point, form_axisym_full, law_elastic, law_plastic, &
-    law_piecewise, law_johnson_cook, law_hot_johnson_cook, law_null, law_viscoelastic, &
+    law_piecewise, law_johnson_cook, law_hot_johnson_cook, law_null, law_viscoelastic, law_ogden, &
     hourglass_viscous, hourglass_stiffness, hourglass_assumed, spall_pressure, spall_stress, &
     spall_tension, johnson_cook_t, rubber_t, mooney_rivlin, blatz_ko, blatz_ko_poisson, &
     erosion_t, asks_for_strain, asks_for_stress, condensed_bulk
@@ -23,7 +23,7 @@ module parts_m
   !> Material laws, known to the material dispatcher only.
   integer, parameter :: law_elastic = 1, law_plastic = 2, law_piecewise = 3, &
     law_johnson_cook = 4, law_crushable_foam = 5, law_hot_johnson_cook = 6, law_null = 7, &
-    law_mooney_rivlin = 8, law_blatz_ko = 9, law_viscoelastic = 10
+    law_mooney_rivlin = 8, law_blatz_ko = 9, law_viscoelastic = 10, law_ogden = 11
   !> Meaning of the pressure cut-off (SPALL): bound of the tension; tensile stress at failure;
   !> tension at failure.
   integer, parameter :: spall_pressure = 1, spall_stress = 2, spall_tension = 3
@@ -67,6 +67,9 @@ module parts_m
     real(wp) :: a = 0.0_wp, b = 0.0_wp !! A and B
     real(wp) :: c = 0.0_wp, d = 0.0_wp !! Mooney & Rivlin: U = C (J^-4 - 1) + D (J^2 - 1)^2
     real(wp) :: exponent = 0.0_wp      !! Blatz & Ko: U = 2A (J^-exponent - 1)/exponent
+    ! Ogden: W = sum mu/alpha (sum l^alpha - 3) + bulk (J - 1 - ln J), l stretches over J^(1/3).
+    integer :: n_term = 0
+    real(wp) :: mu(8) = 0.0_wp, alpha(8) = 0.0_wp, bulk = 0.0_wp
   end type rubber_t
 
   !> Erosion criteria of a material: of its law, of *CONTROL_TIMESTEP, and of *MAT_ADD_EROSION;

@@ -89,7 +89,7 @@ def test_fields_of_explicit_runs_warn_in_implicit_ones(said):
     ("*MAT_ELASTC", "*MAT_ELASTIC"), ("*MAT_PLASTIC_KINEMATICS_TITLE", "*MAT_PLASTIC_KINEMATIC"),
     ("*BOUNDARY_SPC_NODES", "*BOUNDARY_SPC_NODE"), ("*CONTROL_TERMINATON", "*CONTROL_TERMINATION"),
     ("*CONTACT_2D_SILDELINE", "*CONTACT_2D_SLIDELINE"),
-    ("*MAT_OGDEN_RUBBER", None), ("*LOAD_BODY_Z", None), ("*LOAD_BODY_RX", None), ("*ELEMENT_SOLID", None), ("*NODEX", None)])
+    ("*MAT_MTS", None), ("*LOAD_BODY_Z", None), ("*LOAD_BODY_RX", None), ("*ELEMENT_SOLID", None), ("*NODEX", None)])
 def test_nearest_keyword(said, given, meant):
     status, text = said(f"*KEYWORD\n{given}\n1,\n*END\n")
     assert status == 1

@@ -162,7 +162,9 @@ contains
     do i = 1, size(model%materials)
       associate (material => model%materials(i))
         reason = ''
-        if (allocated(material%flow)) then
+        if (allocated(material%rubber)) then
+          if (material%rubber%n_term > 0) reason = 'the law of Ogden'
+        else if (allocated(material%flow)) then
           reason = 'a flow stress of Johnson and Cook'
         else if (material%failure_strain < huge(1.0_wp)) then
           reason = 'a plastic strain at failure'
@@ -171,7 +173,7 @@ contains
         else if (allocated(material%crush)) then
           reason = 'the law of a crushable foam'
         else if ((allocated(material%eos) .or. material%needs_eos) .and. .not. &
-          (allocated(material%rubber) .or. material%is_plane_stress)) then
+          material%is_plane_stress) then
           reason = 'an equation of state'
         end if
         if (len(reason) > 0) call refuse(reason)

@@ -4,7 +4,8 @@ module deck_material_m
   use kinds_m, only : wp
   use model_m, only : model_t
   use parts_m, only : material_t, law_elastic, law_plastic, law_null, law_crushable_foam, &
-    law_mooney_rivlin, law_blatz_ko, law_viscoelastic, mooney_rivlin, blatz_ko, blatz_ko_poisson
+    law_mooney_rivlin, law_blatz_ko, law_viscoelastic, law_ogden, &
+    rubber_t, mooney_rivlin, blatz_ko, blatz_ko_poisson
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
   use deck_fields_m, only : card_t
@@ -77,6 +78,8 @@ contains
         end if
       case ('MAT_CRUSHABLE_FOAM')
         call read_crushable_foam(deck, card, model, material)
+      case ('MAT_OGDEN_RUBBER')
+        call read_ogden(deck, cursor, card, material)
       case ('MAT_VISCOELASTIC')
         call read_viscoelastic(deck, card, material)
       case ('MAT_RIGID')
@@ -171,6 +174,37 @@ contains
     material%eos = eos_t(kind=eos_by_law, stiffness=material%bulk)
     material%sound_speed = sqrt((material%bulk + 4.0_wp*material%shear/3.0_wp)/material%density)
   end subroutine set_moduli
+
+  !> *MAT_OGDEN_RUBBER: pairs of MU and ALPHA, sum MU ALPHA = 2G.
+  subroutine read_ogden(deck, cursor, card, material)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(inout) :: cursor
+    type(card_t), intent(inout) :: card
+    type(material_t), intent(inout) :: material
+    type(card_t) :: mu, alpha, prony
+    type(rubber_t) :: rubber
+    integer :: k
+
+    call next_card(deck, cursor, 2, mu)
+    call next_card(deck, cursor, 3, alpha)
+    call next_card(deck, cursor, 4, prony)
+    material%law = law_ogden
+    do k = 1, 8
+      if (.not. abs(mu%r(k)) > 0.0_wp) cycle
+      if (.not. abs(alpha%r(k)) > 0.0_wp) call report_field(deck, alpha, k, &
+        'is 0, but MU'//to_text(k)//' is not')
+      rubber%n_term = rubber%n_term + 1
+      rubber%mu(rubber%n_term) = mu%r(k)
+      rubber%alpha(rubber%n_term) = alpha%r(k)
+    end do
+    material%shear = 0.5_wp*dot_product(rubber%mu, rubber%alpha)
+    if (.not. material%shear > 0.0_wp) call report_field(deck, mu, 'MU1', 'to MU8 times ALPHA1 ' &
+      //'to ALPHA8 add up to '//to_text(2.0_wp*material%shear)//'; the sum is 2 G, above 0')
+    if (any(card%bad) .or. any(mu%bad) .or. any(alpha%bad)) return
+    material%rubber = rubber
+    call set_moduli(real_of(card, 'PR'), material)
+    material%rubber%bulk = material%bulk
+  end subroutine read_ogden
 
   !> *MAT_VISCOELASTIC: bulk modulus, shear moduli at first and after a long time, decay constant.
   subroutine read_viscoelastic(deck, card, material)

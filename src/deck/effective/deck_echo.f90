@@ -183,8 +183,15 @@ contains
       if (material%eos%id > 0) text = text//', equation of state '//to_text(material%eos%id) &
         //' (initial K and c)'
     end if
-    if (allocated(material%rubber)) text = text//', rubber A '//to_text(material%rubber%a) &
-      //', B '//to_text(material%rubber%b)//' (moduli of small strain)'
+    if (allocated(material%rubber)) then
+      if (material%rubber%n_term > 0) then
+        text = text//', Ogden rubber of '//to_text(material%rubber%n_term)//' term(s)'
+      else
+        text = text//', rubber A '//to_text(material%rubber%a)//', B ' &
+          //to_text(material%rubber%b)
+      end if
+      text = text//' (moduli of small strain)'
+    end if
     if (material%decay >= 0.0_wp) text = text//', viscoelastic, from this G to ' &
       //to_text(material%long_shear)//' with the decay constant '//to_text(material%decay)
     if (allocated(material%crush)) text = text//', crush curve ' &

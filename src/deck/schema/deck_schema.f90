@@ -80,8 +80,8 @@ module deck_schema_m
     'SID a set number', &
     'RO a density', &
     'E a Young''s modulus', &
-    'MAT_MOONEY-RIVLIN.PR a Poisson''s ratio of this law (more than 0 and less than 0.5; 0.49 ' &
-    //'and more is usual)', &
+    'MAT_MOONEY-RIVLIN.PR,MAT_OGDEN.PR a Poisson''s ratio of this law (more than 0 and less than ' &
+    //'0.5; 0.49 and more is usual)', &
     'PR a Poisson''s ratio', &
     'G,G0,GI a shear modulus', &
     'BULK a bulk modulus', &
@@ -135,6 +135,7 @@ module deck_schema_m
     'MAT_024 MAT_PIECEWISE_LINEAR_PLASTICITY', &
     'MAT_027 MAT_MOONEY-RIVLIN_RUBBER', &
     'MAT_063 MAT_CRUSHABLE_FOAM', &
+    'MAT_077_O MAT_OGDEN_RUBBER', &
     'MAT_098 MAT_SIMPLIFIED_JOHNSON_COOK', &
     'EOS_001 EOS_LINEAR_POLYNOMIAL', &
     'EOS_004 EOS_GRUNEISEN', &

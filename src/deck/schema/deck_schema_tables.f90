@@ -157,6 +157,11 @@ module deck_schema_tables_m
     'MAT_MOONEY-RIVLIN_RUBBER t', &
     ' MID:i>=1 RO:f>=1e-30<=1e30 PR:f>0<0.5 A:f>=0<=1e30 B:f>=0<=1e30 REF:fr', &
     ' SGL:fr SW:fr ST:fr LCID:ir', &
+    'MAT_OGDEN_RUBBER t', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 PR:f>0<0.5 N:ir NV:is G:fr SIGF:fr REF:fr', &
+    ' MU1:f MU2:f MU3:f MU4:f MU5:f MU6:f MU7:f MU8:f', &
+    ' ALPHA1:f ALPHA2:f ALPHA3:f ALPHA4:f ALPHA5:f ALPHA6:f ALPHA7:f ALPHA8:f', &
+    ' GI:fr BETAI:fr VFLAG:is', &
     'MAT_BLATZ-KO_RUBBER t', &
     ' MID:i>=1 RO:f>=1e-30<=1e30 G:f>=1e-30<=1e30 REF:fr', &
     'MAT_CRUSHABLE_FOAM t', &
