@@ -14,7 +14,7 @@ module curves_m
     real(wp), allocatable :: ordinate(:)   !! same length
     integer :: phase = 0                   !! SIDR: 0 run, 1 dynamic relaxation, 2 both
     logical :: is_of_time = .true.         !! false for curves of materials
-    logical :: is_function = .false.       !! sampled up to the end time of the deck
+    logical :: is_function = .false.       !! of time, sampled up to the end time
   contains
     procedure :: visit => visit_curve
   end type curve_t

@@ -75,7 +75,6 @@ contains
     type(remote_t), intent(inout), optional :: remote !! nodes and slots of other processes
     type(inside_tests_t), intent(inout), optional :: inside_tests
     type(log_t) :: silence
-    integer :: i
 
     silence%is_silent = .true.
     call start_state(model, silence, state, error, remote, inside_tests)
@@ -99,11 +98,6 @@ contains
     if (.not. allocated(source%error)) call resume_contacts(state)
     if (allocated(source%error)) then
       error = source%error
-    else if (any([(model%curves(i)%is_function .and. model%curves(i)%abscissa(size( &
-      model%curves(i)%abscissa)) < (1.0_wp - round_off)*model%controls%end_time, &
-      i=1, size(model%curves))])) then
-      call raise(error, 'a *DEFINE_CURVE_FUNCTION is known up to the end time of the first run, ' &
-        //'not up to '//to_text(model%controls%end_time)//'; run the deck anew', status_input)
     else if (state%time - model%controls%end_time > merge(round_off, 1.0_wp, &
       model%controls%implicit%is_on)*state%dt_before) then
       call raise(error, 'the restart file '//source%path//' is of time '//to_text(state%time) &

@@ -16,7 +16,7 @@ def body(n, i, steps, at=lambda x, y: (x, y)):
     x, quads = grid(4, 3, 0.4, 0.3)
     deck.add("*NODE", *[f"{k + 1 + n},{at(*p)[0]!r},{at(*p)[1]!r}" for k, p in enumerate(x.tolist())])
     deck.add("*ELEMENT_SHELL", *[",".join(str(v) for v in (k + 1 + n, 1 + i, *(q + 1 + n for q in quad)))
-                                 for k, quad in enumerate(quads.tolist())])
+                                 for k, quad in enumerate(quads)])
     deck.add("*SET_NODE_LIST", (1 + i,), tuple(v + n for v in (1, 2, 3, 4, 5)))
     deck.add("*SET_NODE_LIST_GENERATE", (2 + i,), (16 + n, 20 + n)).add("*SET_PART_LIST", (3 + i,), (1 + i,))
     deck.add("*SET_NODE_GENERAL", (4 + i,), ("PART", 1 + i), ("DNODE", 1 + n))

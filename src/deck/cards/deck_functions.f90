@@ -4,11 +4,13 @@ module deck_functions_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t
-  use deck_cards_m, only : cursor_t, first_card, next_text
+  use text_m, only : upper_case
+  use deck_cards_m, only : cursor_t, first_card
   use deck_expression_m, only : evaluate
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_curve
-  use deck_lines_m, only : deck_t, blocks_of, line_error
+  use deck_lines_m, only : deck_t, blocks_of, line_error, line_text, replace_line
+  use deck_parameter_table_m, only : find_parameter
   use deck_report_m, only : report_t
   use deck_values_m, only : real_of
   implicit none
@@ -35,7 +37,10 @@ contains
 
     text = ''
     do while (cursor%line <= cursor%last)
-      call next_text(deck, cursor, line)
+      line = with_values(deck, line_text(deck, cursor%line), cursor%source)
+      ! The deck as run has no parameters.
+      if (line /= line_text(deck, cursor%line)) call replace_line(deck, cursor%line, line)
+      cursor%line = cursor%line + 1
       text = text//line
     end do
     allocate (points(2, 0))
@@ -48,6 +53,44 @@ contains
       //message)
     points = reshape([0.0_wp, 0.0_wp], [2, 1])
   end subroutine read_function
+
+  !> The text with the values of parameters for their names.
+  function with_values(deck, text, source) result(resolved)
+    type(deck_t), intent(in) :: deck
+    character(*), intent(in) :: text
+    integer, intent(in) :: source
+    character(:), allocatable :: resolved
+    character(*), parameter :: digits = '0123456789.', letters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZ_'
+    character(len(text) + 1) :: upper
+    integer :: at, i, n
+
+    upper = upper_case(text)//' '
+    resolved = ''
+    at = 1
+    do while (at <= len(text))
+      n = max(verify(upper(at:), letters//digits) - 1, 1)
+      if (scan(upper(at:at), digits) == 1) then
+        ! A number: digits, letter, sign and digits of an exponent.
+        n = verify(upper(at:), digits) - 1
+        if (scan(upper(at + n:at + n), 'ED') == 1) then
+          n = n + 1
+          if (scan(upper(at + n:at + n), '+-') == 1) n = n + 1
+          n = n + verify(upper(at + n:)//' ', digits) - 1
+        end if
+      end if
+      i = 0
+      if (upper(at:at + n - 1) /= 'TIME') i = find_parameter(deck%parameters, &
+        upper(at:at + n - 1), source, .true.)
+      if (i > 0) then
+        if (len(resolved) > 0) resolved = resolved(:len(resolved) - merge(1, 0, &
+          resolved(len(resolved):) == '&'))
+        resolved = resolved//'('//deck%parameters%items(i)%text//')'
+      else
+        resolved = resolved//text(at:at + n - 1)
+      end if
+      at = at + n
+    end do
+  end function with_values
 
   !> Points between which the function differs from a straight line by the tolerance at most, found
   !> by halving intervals.

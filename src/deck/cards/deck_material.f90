@@ -192,7 +192,7 @@ contains
     do k = 1, 8
       if (.not. abs(mu%r(k)) > 0.0_wp) cycle
       if (.not. abs(alpha%r(k)) > 0.0_wp) call report_field(deck, alpha, k, &
-        'is 0, but MU'//to_text(k)//' is not')
+        'is no exponent of its MU, which is not 0')
       rubber%n_term = rubber%n_term + 1
       rubber%mu(rubber%n_term) = mu%r(k)
       rubber%alpha(rubber%n_term) = alpha%r(k)

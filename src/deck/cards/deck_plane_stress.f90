@@ -67,11 +67,16 @@ contains
     reason = ''
     if (allocated(material%crush)) then
       reason = 'the law of a crushable foam'
+    else if (material%decay >= 0.0_wp) then
+      reason = 'the law of viscoelasticity'
     else if (material%needs_eos) then
       reason = 'an equation of state'
     else if (allocated(material%eos)) then
       if (.not. any(material%eos%kind == [eos_by_law, eos_logarithmic])) &
         reason = 'an equation of state'
+    end if
+    if (allocated(material%rubber)) then
+      if (material%rubber%n_term > 0) reason = 'the law of Ogden'
     end if
     if (len(reason) == 0 .and. (material%spall /= spall_pressure &
       .or. material%cutoff > -huge(1.0_wp))) reason = 'a pressure cut-off (PC)'

@@ -145,7 +145,7 @@ contains
     logical, intent(in), optional :: of_beams(:) !! sets with the number of a beam part
     integer, allocatable :: ids(:), lines(:), duplicates(:)
     type(id_map_t) :: map
-    character(5) :: name
+    character(12) :: name
     integer :: i, n
 
     n = deck%maps(kind)%n
@@ -161,7 +161,7 @@ contains
     deck%maps(kind) = map
     do i = 1, size(duplicates)
       name = field
-      if (present(of_beams)) name = merge('PID  ', name, of_beams(duplicates(i)))
+      if (present(of_beams)) name = merge('PID         ', name, of_beams(duplicates(i)))
       call reject_field(deck, location_t(map%lines(duplicates(i)), merge(2, 1, kind == a_part), &
         trim(name)), 'is the number of another '//trim(kind_names(kind))//' (' &
         //where_text(deck, map%lines(index_of(map, map%ids(duplicates(i)))))//')')

@@ -38,7 +38,11 @@ def stretched(stretch, angle, points, end=END):
     way = rotate(coordinates * np.asarray(stretch[:2]), angle) - rotate(coordinates, angle)
     deck.curve(1, [(0.0, 0.0), (end, 1.0)])
     for node, (x, y) in zip(nodes, way):
-        deck.prescribe(node, 1, 2, 1, x or 1e-300).prescribe(node, 2, 2, 1, y or 1e-300)
+        for dof, size in ((1, x), (2, y)):
+            if abs(size) > 0.0:
+                deck.prescribe(node, dof, 2, 1, size)
+            else:
+                deck.fix([node], x=int(dof == 1), y=int(dof == 2))
     return deck.output(plot=end, glstat=end / 10)
 
 
