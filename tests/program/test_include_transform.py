@@ -56,8 +56,10 @@ def test_numbers_and_positions_are_those_written_out(slideline, tmp_path, move):
                       ("*DEFINE_TRANSFORMATION", (1,), MOVES[move])]}
     if move == "TRANSL":  # offsets of files inside each other add up
         ways["nested"] = [("*INCLUDE", "body.k"), ("*INCLUDE_TRANSFORM", "outer.k", (40, 60, 6, 6, 6, 6, 6), (6,))]
-        files["outer.k"] = files["outer.k"].replace("TRANSFORMATION\n1\n", "TRANSFORMATION\n1\n")
     found = {name: histories(run(slideline, name, tmp_path, ways[name], files, 100)) for name in ways}
+    done = slideline("i=moved/job.effective.k", "d=again", "jobid=job")
+    assert done.returncode == 0, done.stderr
+    assert histories(tmp_path / "again") == found["moved"]
     if move == "TRANSL":
         assert found["moved"] == found["written"] == found["nested"]
     else:  # cos 90 degrees is not 0
