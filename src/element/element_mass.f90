@@ -151,6 +151,7 @@ contains
         end do
       end associate
     end do
+    if (.not. allocated(model%rigids)) return
     do i = 1, size(model%rigids)
       if (.not. model%rigids(i)%has_inertia) cycle
       associate (body => model%rigids(i))
