@@ -31,6 +31,7 @@ module entry_m
     real(wp) :: lateral = huge(1.0_wp)  !! motion before which it can not have come behind any other
                                       !! candidate from beside, m
     logical :: is_active = .false.
+    logical :: is_faced = .false.     !! a point between nodes is behind a face within 60 degrees
     logical :: is_released = .false.  !! it has come to lie deeper than a first contact may be
     real(wp) :: offset = 0.0_wp       !! entry offset, m
     real(wp) :: distance = 0.0_wp     !! relative motion before which it can not touch, m
@@ -53,6 +54,7 @@ contains
     type(local_coordinates_t) :: local
     integer :: segments(2), k, j, at, last
     real(wp) :: gap, square, least
+    logical :: counts
 
     least = huge(1.0_wp)
     segments = segments_of(own, status%pass%n_on_segment, i)
@@ -84,6 +86,8 @@ contains
             if (gap >= contact_gap(pass, i, segment)) cycle
             found%lateral = min(found%lateral, way_in(local))
             if (.not. is_behind(status, own, other, positions, local, i, segment)) cycle
+            call weigh_face(status, own, positions, local, i, segment, found, counts)
+            if (.not. counts) cycle
             if (has_entered(status, own, other, positions, increments, local, i, segment)) then
               if (found%is_active .and. abs(gap) >= abs(found%projection%gap)) cycle
               found%projection = face_projection(local, segment)
@@ -154,6 +158,30 @@ contains
     if (behind) behind = is_opposed(status%pass, own, positions, i, local_normal(local))
   end function is_behind
 
+  !> Whether a face that a point is behind counts: points between nodes may meet faces at up to 84
+  !> degrees, but at a corner these leave the point to a face that is opposed to it within 60.
+  pure subroutine weigh_face(status, own, positions, local, i, segment, found, counts)
+    type(contact_status_t), intent(in) :: status
+    type(surface_t), intent(in) :: own
+    real(wp), intent(in), contiguous :: positions(:, :)
+    type(local_coordinates_t), intent(in) :: local !! of the point from the segment
+    integer, intent(in) :: i, segment
+    type(found_contact_t), intent(inout) :: found
+    logical, intent(out) :: counts
+    logical :: is_faced
+
+    counts = .true.
+    if (status%pass%n_on_segment == 0) return
+    is_faced = is_opposed(status%pass, own, positions, i, local_normal(local), face_on)
+    if (is_faced .and. .not. status%pass%is_trial) &
+      is_faced = -local_gap(local) <= depth_limit(status, i, segment)
+    counts = is_faced .or. .not. found%is_faced
+    if (.not. is_faced .or. found%is_faced) return
+    found%is_faced = .true.
+    found%is_active = .false.
+    found%depth = huge(1.0_wp)
+  end subroutine weigh_face
+
   !> Whether a point behind a segment has come through it: it was not behind it before the step, and
   !> is no deeper than a first contact may be unless the step is an implicit one.
   pure function has_entered(status, own, other, positions, increments, local, i, &
@@ -196,7 +224,8 @@ contains
       end if
       if (projection%is_on .and. projection%gap < contact_gap(pass, i, projection%segment)) then
         found%distance = 0.0_wp
-        if (.not. is_opposed(pass, own, positions, i, projection%normal)) then
+        if (.not. is_opposed(pass, own, positions, i, projection%normal, merge(face_on, side_on, &
+          found%is_faced))) then
           if (found%behind == 0) return
           projection = face_projection(coordinates_on_segment(point, &
             positions(:, pass%other_at + other%segments(1, &
@@ -336,12 +365,13 @@ contains
   !> else the nodes of a body that slides on over a ramp would be held by the end face in front of
   !> it. At an end of an open surface the tangent that leads out of it replaces the missing normal
   !> there.
-  pure function is_opposed(pass, own, positions, i, normal) result(opposed)
+  pure function is_opposed(pass, own, positions, i, normal, largest) result(opposed)
     type(pass_t), intent(in) :: pass
     type(surface_t), intent(in) :: own               !! of the points
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     integer, intent(in) :: i                         !! point
     real(wp), intent(in) :: normal(2)                !! outward, of the face
+    real(wp), intent(in), optional :: largest        !! cosine for points between nodes
     logical :: opposed
     real(wp) :: t(2, 2), normals(2, 2), limit
     integer :: segments(2), k
@@ -357,6 +387,7 @@ contains
     if (segments(1) == 0) normals(:, 1) = -t(:, 2)
     if (segments(2) == 0) normals(:, 2) = t(:, 1)
     limit = merge(side_on, face_on, segments(1) == segments(2))
+    if (present(largest)) limit = min(limit, largest)
     do k = 1, 2
       if (segments(k) == 0) cycle
       opposed = dot_product(normals(:, k), normal) < limit
