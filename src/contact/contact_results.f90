@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Results of an interface for the writers: resultants, and values of its nodes.
 module contact_results_m
-  use arcs_m, only : arc_projection_t, project_on_arcs
+  use arcs_m, only : offset_by_arc
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use search_state_m, only : candidates_t, active
   use contacts_m, only : contact_t
@@ -288,9 +288,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: i !! node of the slave surface
     real(wp) :: offset
-    type(arc_projection_t) :: projection
     integer :: point
-    logical :: is_curved
 
     offset = 0.0_wp
     if (memory%is_stale .or. max(contact%slave%incoming(i), contact%slave%outgoing(i)) == 0) return
@@ -299,9 +297,8 @@ contains
       if (status%state(point) /= active) return
       offset = status%offset(point)
       if (.not. memory%has%arcs) return
-      call project_on_arcs(memory, [i, i], 0.0_wp, memory%n_slave &
-        + contact%master%segments(:, status%segment(point)), projection, is_curved)
-      if (is_curved) offset = offset + projection%offset
+      offset = offset + offset_by_arc(memory, i, memory%n_slave &
+        + contact%master%segments(:, status%segment(point)))
     end associate
   end function offset_at
 

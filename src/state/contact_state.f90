@@ -20,7 +20,8 @@ module contact_state_m
   use visitor_m, only : visited_t, visitor_t, any_length
   implicit none
   private
-  public :: contact_state_t, contact_points_t, contact_scratch_t, arcs_t, features_t, &
+  public :: contact_state_t, contact_points_t, contact_scratch_t, arcs_t, arc_shape_t, flat_arc, &
+    features_t, &
     allocate_points, allocate_damping, allocate_tractions, make_room, move_point, &
     allocate_scratch, exchange, n_side, n_sites, n_springs, site_at, has_offsets
 
@@ -80,6 +81,16 @@ module contact_state_m
     logical, allocatable :: is_freed(:)     !! (n_site) which; only where ties break
   end type contact_scratch_t
 
+  !> Shape of an arc over its secant: the sine of its angle to the secant is
+  !> bend (1/2 - xi) + skew (1 - 6 xi (1 - xi)): normals of neighbours meet at their node.
+  type :: arc_shape_t
+    real(wp) :: bend !! kappa L
+    real(wp) :: skew
+  end type arc_shape_t
+
+  !> Shape of a flat segment.
+  type(arc_shape_t), parameter :: flat_arc = arc_shape_t(0.0_wp, 0.0_wp)
+
   !> Arcs that segments stand for, by the initial mesh; a restart finds them again.
   type :: arcs_t
     real(wp), allocatable :: share(:, :)  !! (2, n_slave + n_master) parts of the turns at both ends
@@ -91,6 +102,12 @@ module contact_state_m
     real(wp), allocatable :: height(:)    !! (n_slave + n_master) how far an arc may stand off its
                                           !! segment, m: gaps below that make contact points
     real(wp) :: highest = 0.0_wp          !! of both sides together, m
+    integer, allocatable :: around(:, :)  !! (4, n_slave + n_master) nodes of the curved segment that
+                                          !! starts at a node, amid those beside; its own twice at
+                                          !! the end of an open surface
+    type(arc_shape_t), allocatable :: shape(:) !! (n_slave + n_master) of the segment that starts at
+                                          !! a node, in this call, where points are on it
+    logical, allocatable :: is_formed(:)  !! (n_slave + n_master) it has been formed in this call
   end type arcs_t
 
   !> What an interface has beside springs along the normal at its points: by its formulation and by

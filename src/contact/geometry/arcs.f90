@@ -3,17 +3,17 @@
 !> contact points between arcs in place of between their secants (doc/theory/contact.md, section
 !> 5.9). Forces still go to the two nodes of a segment by linear functions.
 module arcs_m
-  use contact_state_m, only : arcs_t, contact_state_t, contact_points_t, n_side, site_at
+  use contact_state_m, only : arcs_t, arc_shape_t, flat_arc, contact_state_t, contact_points_t, &
+    n_side
   use contacts_m, only : contact_t
-  use geometry_m, only : separation
   use kinds_m, only : wp
+  use projection_block_m, only : n_block
   use search_state_m, only : pass_t
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: prepare_arcs, half_turn, find_curvatures, sagitta, curve_points, arc_shape_t, &
-    arc_projection_t, project_on_arcs, project_virtual_node, present_shape, sine_at, sine_terms, &
-    is_flat, flat_arc, steepest
+  public :: prepare_arcs, half_turn, find_curvatures, sagitta, curve_points, &
+    present_shape, offset_by_arc, sine_terms, is_flat, steepest
 
   !> Turn at one end of a segment, as a part of that at the other, below which it is flat.
   real(wp), parameter :: flat = 0.1_wp
@@ -31,24 +31,20 @@ module arcs_m
   !> of the other end.
   real(wp), parameter :: all_of_it = 1.0_wp, mirrored = -1.0_wp
 
-  !> Shape of an arc over its secant: the sine of its angle to the secant is
-  !> bend (1/2 - xi) + skew (1 - 6 xi (1 - xi)): normals of neighbours meet at their node.
-  type :: arc_shape_t
-    real(wp) :: bend !! kappa L
-    real(wp) :: skew
-  end type arc_shape_t
-
-  !> Shape of a flat segment.
-  type(arc_shape_t), parameter :: flat_arc = arc_shape_t(0.0_wp, 0.0_wp)
-
-  !> Projection of a point on the arc over a secant. Without default values, which would be written
-  !> before each use.
-  type :: arc_projection_t
-    real(wp) :: xi        !! on the secant: where the force acts
-    real(wp) :: gap       !! m, to the arc
-    real(wp) :: offset    !! of that from the gap of the secants, m
-    real(wp) :: normal(2) !! of the arc, outward
-  end type arc_projection_t
+  !> Points over segments of the other surface, one of which at least is curved, many at a time.
+  !> Without default values, which would be written before each use.
+  type :: arc_block_t
+    integer :: n
+    integer :: point(n_block)          !! on the list; the first of a virtual node
+    real(wp) :: bend(n_block), skew(n_block)         !! of the segment
+    integer :: nodes(4, n_block)       !! of its own segment, or one twice, and of the segment
+    real(wp) :: own_bend(n_block), own_skew(n_block) !! of its own segment
+    real(wp) :: own_xi(n_block)        !! on that
+    real(wp) :: xi(n_block)            !! on the segment: where the force acts
+    real(wp) :: gap(n_block)           !! m, between arcs
+    real(wp) :: offset(n_block)        !! of that from the gap of the secants, m
+    real(wp) :: normal(n_block, 2)     !! of the arc, outward
+  end type arc_block_t
 
 contains
 
@@ -61,6 +57,9 @@ contains
       allocate (arcs%share(2, size(memory%nodes)), arcs%turn(size(memory%nodes)), &
         arcs%height(size(memory%nodes)), source=0.0_wp)
       allocate (arcs%beside(2, size(memory%nodes)), source=0)
+      allocate (arcs%shape(size(memory%nodes)), source=flat_arc)
+      allocate (arcs%is_formed(size(memory%nodes)), source=.false.)
+      allocate (arcs%around(4, size(memory%nodes)), source=0)
       call add_surface(contact%slave, contact%largest_turn, 0, memory%positions, arcs)
       call add_surface(contact%master, contact%largest_turn, memory%n_slave, memory%positions, arcs)
       memory%has%arcs = any(arcs%height > 0.0_wp)
@@ -121,6 +120,9 @@ contains
           if (neighbours(k) > 0) part(k) = length(s)/(length(s) + length(neighbours(k)))
         end do
         arcs%share(:, ends(1)) = part
+        ! At an end of an open surface the segment has no turn: its arc is the mirror image there.
+        arcs%around(:, ends(1)) = [merge(arcs%beside(1, ends(1)), ends(1), neighbours(1) > 0), &
+          ends, merge(arcs%beside(2, ends(2)), ends(2), neighbours(2) > 0)]
         do k = 1, 2
           if (neighbours(k) == 0) cycle
           if (.not. abs(curvature(neighbours(k))) > 0.0_wp .and. abs(arcs%turn(ends(k))) &
@@ -225,44 +227,75 @@ contains
     height = 0.125_wp*abs(curvature)*secant**2
   end function sagitta
 
-  !> Shape of the arc of a segment at present: at each end it turns by its part of what the surface
-  !> turns there.
+  !> Shape of the arc of a segment at present.
   pure function present_shape(memory, first) result(shape)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: first !! node where the segment starts, local number
     type(arc_shape_t) :: shape
-    real(wp) :: sines(2)
+    type(arc_shape_t) :: shapes(1)
 
     shape = flat_arc
-    associate (share => memory%arcs%share(:, first))
-      if (.not. abs(share(1)) > 0.0_wp) return
-      sines = 0.0_wp
-      if (share(1) > 0.0_wp) sines(1) = sine_at(memory, first, share(1))
-      if (share(2) > 0.0_wp) sines(2) = sine_at(memory, memory%arcs%beside(2, first), share(2))
-      where (share < 0.0_wp) sines = sines([2, 1])
-    end associate
-    shape = arc_shape_t(sines(1) + sines(2), 0.5_wp*(sines(1) - sines(2)))
+    if (.not. abs(memory%arcs%share(1, first)) > 0.0_wp) return
+    call form_shapes([first], memory%positions, memory%arcs, shapes)
+    shape = shapes(1)
   end function present_shape
 
-  !> Sine of a part of the present turn at a node, of a surface that is still bent there.
-  pure function sine_at(memory, node, share) result(sine)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: node
-    real(wp), intent(in) :: share
-    real(wp) :: sine
-    real(wp) :: turn, ratio
+  !> Shapes of the arcs of segments at present, at most of a block of them: at each end an arc turns
+  !> by its part of what the surface turns there, as far as that is still bent as it was.
+  pure subroutine form_shapes(first, positions, arcs, shapes)
+    integer, intent(in), contiguous :: first(:)         !! nodes where they start, local numbers
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
+    type(arcs_t), intent(in) :: arcs
+    type(arc_shape_t), intent(out) :: shapes(:)
+    real(wp), dimension(n_block, 0:2) :: x, y !! the segments before, these, and those behind, m
+    real(wp), dimension(n_block, 2) :: initial, share, sine
+    real(wp) :: turn, square, fade, way(4)
+    integer :: k, e
 
-    associate (positions => memory%positions, beside => memory%arcs%beside(:, node))
-      turn = half_turn(separation(positions(:, node), positions(:, beside(1))), &
-        separation(positions(:, beside(2)), positions(:, node)))
-    end associate
-    ratio = turn/memory%arcs%turn(node)
-    if (ratio <= 0.0_wp .or. ratio >= hinge) turn = 0.0_wp
-    if (ratio > followed) turn = turn*(hinge - ratio)/(hinge - followed)
-    associate (terms => sine_terms(share))
-      sine = 2.0_wp*share*turn/sqrt(1.0_wp + turn**2*(terms(1) + turn**2*terms(2)))
-    end associate
-  end function sine_at
+    do k = 1, size(first)
+      associate (nodes => arcs%around(:, first(k)))
+        do e = 0, 2
+          way = positions(:, nodes(e + 2)) - positions(:, nodes(e + 1))
+          x(k, e) = way(1) + way(3)
+          y(k, e) = way(2) + way(4)
+        end do
+        do e = 1, 2
+          share(k, e) = arcs%share(e, first(k))
+          initial(k, e) = arcs%turn(nodes(e + 1))
+        end do
+      end associate
+    end do
+    do e = 1, 2
+      !$omp simd private(turn, square, fade)
+      do k = 1, size(first)
+        turn = (x(k, e - 1)*y(k, e) - y(k, e - 1)*x(k, e))/max(tiny(1.0_wp), &
+          sqrt((x(k, e - 1)**2 + y(k, e - 1)**2)*(x(k, e)**2 + y(k, e)**2)) &
+          + (x(k, e - 1)*x(k, e) + y(k, e - 1)*y(k, e)))
+        fade = (hinge - turn/merge(initial(k, e), 1.0_wp, share(k, e) > 0.0_wp)) &
+          /(hinge - followed)
+        turn = turn*max(0.0_wp, min(1.0_wp, fade))
+        turn = merge(turn, 0.0_wp, turn*initial(k, e) > 0.0_wp)
+        square = turn*turn
+        sine(k, e) = 2.0_wp*share(k, e)*turn/sqrt(1.0_wp + square*((2.0_wp + 4.0_wp &
+          *share(k, e)**2)/3.0_wp + square*(16.0_wp*share(k, e)**4 - 1.0_wp)/15.0_wp))
+      end do
+    end do
+    do k = 1, size(first)
+      associate (one => merge(sine(k, 2), sine(k, 1), share(k, 1) < 0.0_wp), &
+        two => merge(sine(k, 1), sine(k, 2), share(k, 2) < 0.0_wp))
+        shapes(k)%bend = one + two
+        shapes(k)%skew = 0.5_wp*(one - two)
+      end associate
+    end do
+  end subroutine form_shapes
+
+  !> Whether a segment is flat.
+  pure function is_flat(shape)
+    type(arc_shape_t), intent(in) :: shape
+    logical :: is_flat
+
+    is_flat = .not. (abs(shape%bend) > 0.0_wp .or. abs(shape%skew) > 0.0_wp)
+  end function is_flat
 
   !> Factors of the powers 2 and 4 of the tangent x of half a turn in the square of 2 p x over the
   !> sine of the part p of the turn: exact for half and all of it, else to the order 6.
@@ -273,120 +306,215 @@ contains
     terms = [(2.0_wp + 4.0_wp*share**2)/3.0_wp, (16.0_wp*share**4 - 1.0_wp)/15.0_wp]
   end function sine_terms
 
-  !> Whether a segment is flat.
-  pure function is_flat(shape)
-    type(arc_shape_t), intent(in) :: shape
-    logical :: is_flat
-
-    is_flat = .not. (abs(shape%bend) > 0.0_wp .or. abs(shape%skew) > 0.0_wp)
-  end function is_flat
-
-  !> Height of an arc over its secant as a part of the length of that, and the sine of its angle to
-  !> it. Beyond the ends both arcs of a node go on along its tangent.
-  pure subroutine find_height(shape, xi, height, sine)
-    type(arc_shape_t), intent(in) :: shape
-    real(wp), intent(in) :: xi
-    real(wp), intent(out) :: height, sine
+  !> Heights of arcs over their secants as parts of the lengths of these, and sine and cosine of
+  !> their angles to them. Beyond the ends both arcs of a node go on along its tangent.
+  pure subroutine find_heights(n, bend, skew, xi, height, sine, cosine)
+    integer, intent(in) :: n
+    real(wp), intent(in), dimension(n) :: bend, skew, xi
+    real(wp), intent(out), dimension(n) :: height, sine, cosine
     real(wp) :: x, circle, end_sine
+    integer :: k
 
-    x = max(0.0_wp, min(1.0_wp, xi))
-    circle = shape%bend*(0.5_wp - x)
-    end_sine = min(0.5_wp*abs(shape%bend), steepest)
-    sine = max(-steepest, min(steepest, circle + shape%skew*(1.0_wp - 6.0_wp*x*(1.0_wp - x))))
-    height = x*(1.0_wp - x)*(shape%bend/(sqrt(1.0_wp - min(circle**2, steepest**2)) &
-      + sqrt(1.0_wp - end_sine**2)) + shape%skew*(1.0_wp - 2.0_wp*x)) &
-      + (xi - x)*sine/sqrt(1.0_wp - sine**2)
-  end subroutine find_height
+    !$omp simd private(x, circle, end_sine)
+    do k = 1, n
+      x = max(0.0_wp, min(1.0_wp, xi(k)))
+      circle = bend(k)*(0.5_wp - x)
+      end_sine = min(0.5_wp*abs(bend(k)), steepest)
+      sine(k) = max(-steepest, min(steepest, circle + skew(k)*(1.0_wp - 6.0_wp*x*(1.0_wp - x))))
+      cosine(k) = sqrt(1.0_wp - sine(k)**2)
+      height(k) = x*(1.0_wp - x)*(bend(k)/(sqrt(1.0_wp - min(circle**2, steepest**2)) &
+        + sqrt(1.0_wp - end_sine**2)) + skew(k)*(1.0_wp - 2.0_wp*x)) &
+        + (xi(k) - x)*sine(k)/cosine(k)
+    end do
+  end subroutine find_heights
 
-  !> Projection on the arc over a secant t of length L, from that of the point on the secant, at the
-  !> distance d and xi: by one Newton step to where the normal n of the arc, at the angle beta to
-  !> that of the secant, goes through the point; the force acts along n, for the point on its own
+  !> Project the points of a block on the arcs over their secants t of length L, each from its
+  !> projection on the secant, at the distance d and xi: by one Newton step, no longer than for a
+  !> point at half the radius of curvature, to where the normal n of the arc, at the angle beta to
+  !> that of the secant, goes through the point. The force acts along n, for the point on its own
   !> secant at xi + d tan(beta)/L, so that it has no moment. Both arcs of a node so have the same
   !> normal there. A circle has sin(beta) = kappa L (1/2 - xi).
-  pure function project_on_arc(t, d, off, shape) result(projection)
-    real(wp), intent(in) :: t(2)   !! secant, m
-    real(wp), intent(in) :: d(2)   !! from its first node to the point on its own secant, m
-    real(wp), intent(in) :: off(2) !! from there to the point on its own arc, m
-    type(arc_shape_t), intent(in) :: shape
-    type(arc_projection_t) :: projection
-    real(wp) :: length, unit(2), normal(2), xi, way, sine, cosine, across, above, height
+  pure subroutine project_block(positions, block)
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
+    type(arc_block_t), intent(inout) :: block
+    real(wp), dimension(n_block, 2) :: t, d, own !! secants, from their first nodes to the points on
+                                                 !! their own secants, these secants, m
+    real(wp), dimension(n_block) :: length, across, above, foot, way, height, sine, cosine
+    real(wp) :: unit(2), off(2), gap, fall
+    integer :: k
 
-    length = sqrt(t(1)**2 + t(2)**2)
-    unit = t/length
-    normal = [unit(2), -unit(1)]
-    across = d(1)*normal(1) + d(2)*normal(2)
-    above = across + (off(1)*normal(1) + off(2)*normal(2))
-    xi = ((d(1) + off(1))*unit(1) + (d(2) + off(2))*unit(2))/length
-    call find_height(shape, xi, height, sine)
-    way = way_to_projection(shape, xi, (above/length - height)*sqrt(1.0_wp - sine**2), sine)
-    call find_height(shape, xi + way, height, sine)
-    cosine = sqrt(1.0_wp - sine**2)
-    projection%gap = (above - height*length)*cosine + way*length*sine
-    projection%offset = projection%gap - across
-    projection%normal = normal*cosine - unit*sine
-    projection%xi = (d(1)*unit(1) + d(2)*unit(2) + across*sine/cosine)/length
-  end function project_on_arc
+    associate (n => block%n, bend => block%bend, skew => block%skew)
+      call gather_block(n, block%nodes, block%own_xi, positions, t, d, own)
+      call find_heights(n, block%own_bend, block%own_skew, block%own_xi, height, sine, cosine)
+      !$omp simd private(unit, off)
+      do k = 1, n
+        length(k) = sqrt(t(k, 1)**2 + t(k, 2)**2)
+        unit(1) = t(k, 1)/length(k)
+        unit(2) = t(k, 2)/length(k)
+        off(1) = height(k)*own(k, 2)
+        off(2) = -height(k)*own(k, 1)
+        across(k) = d(k, 1)*unit(2) - d(k, 2)*unit(1)
+        above(k) = across(k) + (off(1)*unit(2) - off(2)*unit(1))
+        foot(k) = ((d(k, 1) + off(1))*unit(1) + (d(k, 2) + off(2))*unit(2))/length(k)
+      end do
+      call find_heights(n, bend, skew, foot, height, sine, cosine)
+      !$omp simd private(gap, fall)
+      do k = 1, n
+        gap = (above(k)/length(k) - height(k))*cosine(k)
+        fall = bend(k) + 6.0_wp*skew(k)*(1.0_wp - 2.0_wp*foot(k))
+        fall = merge(0.0_wp, fall, abs(foot(k) - 0.5_wp) > 0.5_wp)
+        way(k) = gap*sine(k)/max(0.5_wp, 1.0_wp + gap*fall)
+        foot(k) = foot(k) + way(k)
+      end do
+      call find_heights(n, bend, skew, foot, height, sine, cosine)
+      !$omp simd private(unit)
+      do k = 1, n
+        unit(1) = t(k, 1)/length(k)
+        unit(2) = t(k, 2)/length(k)
+        block%gap(k) = (above(k) - height(k)*length(k))*cosine(k) + way(k)*length(k)*sine(k)
+        block%offset(k) = block%gap(k) - across(k)
+        block%normal(k, 1) = unit(2)*cosine(k) - unit(1)*sine(k)
+        block%normal(k, 2) = -unit(1)*cosine(k) - unit(2)*sine(k)
+        block%xi(k) = (d(k, 1)*unit(1) + d(k, 2)*unit(2) + across(k)*sine(k)/cosine(k))/length(k)
+      end do
+    end associate
+  end subroutine project_block
 
-  !> Newton step from above a place on an arc to the place whose normal goes through the point, as a
-  !> part of the secant; no longer than for a point at half the radius of curvature.
-  pure function way_to_projection(shape, xi, gap, sine) result(way)
-    type(arc_shape_t), intent(in) :: shape
-    real(wp), intent(in) :: xi, gap, sine !! gap as a part of the secant
-    real(wp) :: way, fall
+  !> Vectors of the points of a block, m.
+  pure subroutine gather_block(n, nodes, own_xi, positions, t, d, own)
+    integer, intent(in) :: n, nodes(4, n)
+    real(wp), intent(in) :: own_xi(n), positions(4, *)
+    real(wp), intent(inout), dimension(n_block, 2) :: t, d, own
+    real(wp), dimension(4) :: along, way, secant
+    integer :: k
 
-    fall = shape%bend + 6.0_wp*shape%skew*(1.0_wp - 2.0_wp*xi)
-    if (abs(xi - 0.5_wp) > 0.5_wp) fall = 0.0_wp
-    way = gap*sine/max(0.5_wp, 1.0_wp + gap*fall)
-  end function way_to_projection
+    !GCC$ NOVECTOR
+    do k = 1, n
+      along = positions(:, nodes(2, k)) - positions(:, nodes(1, k))
+      way = (positions(:, nodes(1, k)) - positions(:, nodes(3, k))) + own_xi(k)*along
+      secant = positions(:, nodes(4, k)) - positions(:, nodes(3, k))
+      own(k, :) = along(1:2) + along(3:4)
+      d(k, :) = way(1:2) + way(3:4)
+      t(k, :) = secant(1:2) + secant(3:4)
+    end do
+  end subroutine gather_block
 
   !> Let all points of an interface stand between arcs: gaps, normals and where forces act on the
-  !> segments that have the normals. Points between flat segments keep their bits.
+  !> segments that have the normals; of type 4 the virtual nodes, for all of their sub-segments.
+  !> Points between flat segments keep their bits.
   pure subroutine curve_points(contact, memory, points)
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
+    type(contact_state_t), intent(inout) :: memory !! out: present shapes of the points' segments
     type(contact_points_t), intent(inout) :: points
-    type(arc_projection_t) :: projection
-    integer :: p, last
-    logical :: is_curved
+    type(arc_block_t) :: block
+    integer :: own(n_side), other(n_side), p, v
+    real(wp) :: own_xi
 
-    p = 1
-    do while (p <= points%n)
-      last = p
+    if (points%n == 0) return
+    call form_present_shapes(contact, memory, points)
+    p = 0
+    v = 0
+    do while (p < points%n)
+      block%n = 0
+      do while (p < points%n .and. block%n < n_block)
+        p = p + 1
+        own = points%slave_nodes(:, p)
+        own_xi = points%slave_weights(2, p)
+        other = points%master_nodes(:, p)
+        if (memory%has%virtual_nodes) then
+          v = v + 1
+          other = nodes_below(contact, memory, memory%slave_status%active_points(v))
+        else if (other(1) == other(2)) then
+          own = other
+          own_xi = 0.0_wp
+          other = points%slave_nodes(:, p)
+        end if
+        call append_to_block(memory%arcs%shape, own, own_xi, other, p, block)
+        if (memory%has%virtual_nodes) p = last_of_virtual_node(points, p)
+      end do
+      call project_block(memory%positions, block)
       if (memory%has%virtual_nodes) then
-        call curve_virtual_node(contact, memory, points, p, last)
-      else if (points%master_nodes(1, p) /= points%master_nodes(2, p)) then
-        call project_on_arcs(memory, points%slave_nodes(:, p), points%slave_weights(2, p), &
-          points%master_nodes(:, p), projection, is_curved)
-        if (is_curved) then
-          points%master_weights(:, p) = [1.0_wp - projection%xi, projection%xi]
-          points%gap(p) = projection%gap
-          points%normal(:, p) = projection%normal
-        end if
+        call store_virtual_nodes(memory%positions, block, points)
       else
-        call project_on_arcs(memory, points%master_nodes(:, p), points%master_weights(2, p), &
-          points%slave_nodes(:, p), projection, is_curved)
-        if (is_curved) then
-          points%slave_weights(:, p) = [1.0_wp - projection%xi, projection%xi]
-          points%gap(p) = projection%gap
-          points%normal(:, p) = -projection%normal
-        end if
+        call store_points(block, points)
       end if
-      p = last + 1
     end do
   end subroutine curve_points
 
-  !> Type 4: the sub-segments of a virtual node, which follow each other, have its gap and normal,
-  !> and move along the master together until their resultant acts along the normal.
-  pure subroutine curve_virtual_node(contact, memory, points, first, last)
+  !> Form the shapes of all segments that points are on, once each.
+  pure subroutine form_present_shapes(contact, memory, points)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), intent(in) :: points
+    integer :: listed(n_block), below(n_side), n, p
+
+    n = 0
+    associate (arcs => memory%arcs, status => memory%slave_status)
+      arcs%is_formed = .not. abs(arcs%share(1, :)) > 0.0_wp
+      do p = 1, points%n
+        associate (slave => points%slave_nodes(:, p), master => points%master_nodes(:, p))
+          if (.not. arcs%is_formed(master(1)) .and. master(1) /= master(2)) &
+            call list_segment(master(1), memory%positions, arcs, listed, n)
+          if (.not. arcs%is_formed(slave(1)) .and. slave(1) /= slave(2)) &
+            call list_segment(slave(1), memory%positions, arcs, listed, n)
+        end associate
+      end do
+      if (memory%has%virtual_nodes) then
+        do p = 1, status%n_active
+          below = nodes_below(contact, memory, status%active_points(p))
+          if (.not. arcs%is_formed(below(1))) &
+            call list_segment(below(1), memory%positions, arcs, listed, n)
+        end do
+      end if
+      call form_listed(listed(:n), memory%positions, arcs)
+    end associate
+  end subroutine form_present_shapes
+
+  !> List a segment; form the shapes of a full list.
+  pure subroutine list_segment(first, positions, arcs, listed, n)
+    integer, intent(in) :: first !! node where it starts, local number
+    real(wp), intent(in), contiguous :: positions(:, :)
+    type(arcs_t), intent(inout) :: arcs
+    integer, intent(inout) :: listed(n_block), n
+
+    if (n == n_block) then
+      call form_listed(listed, positions, arcs)
+      n = 0
+    end if
+    n = n + 1
+    listed(n) = first
+    arcs%is_formed(first) = .true.
+  end subroutine list_segment
+
+  !> Form the shapes of some segments and keep them.
+  pure subroutine form_listed(listed, positions, arcs)
+    integer, intent(in), contiguous :: listed(:)
+    real(wp), intent(in), contiguous :: positions(:, :)
+    type(arcs_t), intent(inout) :: arcs
+    type(arc_shape_t) :: shapes(size(listed))
+    integer :: k
+
+    call form_shapes(listed, positions, arcs, shapes)
+    do k = 1, size(listed)
+      arcs%shape(listed(k)) = shapes(k)
+    end do
+  end subroutine form_listed
+
+  !> Nodes of the master segment that a virtual node is over.
+  pure function nodes_below(contact, memory, virtual_node) result(nodes)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    type(contact_points_t), intent(inout) :: points
+    integer, intent(in) :: virtual_node
+    integer :: nodes(n_side)
+
+    nodes = memory%n_slave + contact%master%segments(:, memory%slave_status%segment(virtual_node))
+  end function nodes_below
+
+  !> The last of the sub-segments of a virtual node, which follow each other.
+  pure function last_of_virtual_node(points, first) result(last)
+    type(contact_points_t), intent(in) :: points
     integer, intent(in) :: first
-    integer, intent(out) :: last
-    type(arc_projection_t) :: projection
-    real(wp) :: lever, along, t(2), d(2)
-    integer :: nodes(n_side), p
-    logical :: is_curved
+    integer :: last
 
     last = first
     do while (last < points%n)
@@ -394,96 +522,119 @@ contains
         .or. abs(points%slave_weights(2, last + 1) - points%slave_weights(2, first)) > 0.0_wp) exit
       last = last + 1
     end do
-    call project_virtual_node(contact, memory, points, first, projection, nodes, is_curved)
-    if (.not. is_curved) return
-    lever = 0.0_wp
-    along = 0.0_wp
-    do p = first, last
-      points%gap(p) = projection%gap
-      points%normal(:, p) = projection%normal
-      call sides_of_point(memory, points, p, d, t)
-      lever = lever + points%area(p)*cross(projection%normal, d)
-      along = along + points%area(p)*cross(projection%normal, t/norm2(t))
-    end do
-    do p = first, last
-      call sides_of_point(memory, points, p, d, t)
-      points%master_weights(2, p) = points%master_weights(2, p) + lever/(along*norm2(t))
-      points%master_weights(1, p) = 1.0_wp - points%master_weights(2, p)
-    end do
-  end subroutine curve_virtual_node
+  end function last_of_virtual_node
 
-  !> Vector from the master side of a point to its slave side, and its master segment, m.
-  pure subroutine sides_of_point(memory, points, p, d, t)
-    type(contact_state_t), intent(in) :: memory
-    type(contact_points_t), intent(in) :: points
-    integer, intent(in) :: p
-    real(wp), intent(out) :: d(2), t(2)
-
-    associate (positions => memory%positions, slave => points%slave_nodes(:, p), &
-      master => points%master_nodes(:, p))
-      t = separation(positions(:, slave(2)), positions(:, slave(1)))
-      d = separation(positions(:, slave(1)), positions(:, master(1))) &
-        + points%slave_weights(2, p)*t
-      t = separation(positions(:, master(2)), positions(:, master(1)))
-      d = d - points%master_weights(2, p)*t
-    end associate
-  end subroutine sides_of_point
-
-  !> z component of the cross product.
-  pure function cross(a, b)
-    real(wp), intent(in) :: a(2), b(2)
-    real(wp) :: cross
-
-    cross = a(1)*b(2) - a(2)*b(1)
-  end function cross
-
-  !> Projection of a point at xi between two nodes of its own surface on the arc of a segment of the
-  !> other one.
-  pure subroutine project_on_arcs(memory, own, own_xi, other, projection, is_curved)
-    type(contact_state_t), intent(in) :: memory
+  !> Append a point at xi between two nodes of its own surface, over a segment of the other one,
+  !> unless both are flat. Nodes are on their arcs.
+  pure subroutine append_to_block(shape, own, own_xi, other, point, block)
+    type(arc_shape_t), intent(in) :: shape(*)         !! by the nodes where segments start
     integer, intent(in) :: own(n_side), other(n_side) !! local numbers; own: one node twice, or both
                                                       !! of a segment
     real(wp), intent(in) :: own_xi
-    type(arc_projection_t), intent(out) :: projection
-    logical, intent(out) :: is_curved !! either segment; else there is no projection
-    type(arc_shape_t) :: shape, own_shape
-    real(wp) :: t(2), d(2), off(2), height, sine
+    integer, intent(in) :: point                      !! its number
+    type(arc_block_t), intent(inout) :: block
+    type(arc_shape_t) :: own_shape
+    integer :: n
 
-    shape = present_shape(memory, other(1))
     own_shape = flat_arc
-    if (own(1) /= own(2) .and. own_xi*(1.0_wp - own_xi) > 0.0_wp) &
-      own_shape = present_shape(memory, own(1))
-    is_curved = .not. (is_flat(shape) .and. is_flat(own_shape))
-    if (.not. is_curved) return
-    call find_height(own_shape, own_xi, height, sine)
-    associate (positions => memory%positions)
-      t = separation(positions(:, own(2)), positions(:, own(1)))
-      d = separation(positions(:, own(1)), positions(:, other(1))) + own_xi*t
-      off = height*[t(2), -t(1)]
-      t = separation(positions(:, other(2)), positions(:, other(1)))
-    end associate
-    projection = project_on_arc(t, d, off, shape)
-  end subroutine project_on_arcs
+    if (own(1) /= own(2) .and. own_xi*(1.0_wp - own_xi) > 0.0_wp) own_shape = shape(own(1))
+    if (is_flat(own_shape) .and. is_flat(shape(other(1)))) return
+    n = block%n + 1
+    block%n = n
+    block%point(n) = point
+    block%nodes(1:2, n) = own
+    block%nodes(3:4, n) = other
+    block%own_xi(n) = own_xi
+    block%own_bend(n) = own_shape%bend
+    block%own_skew(n) = own_shape%skew
+    block%bend(n) = shape(other(1))%bend
+    block%skew(n) = shape(other(1))%skew
+  end subroutine append_to_block
 
-  !> Projection on arcs of the virtual node of a point of type 4; xi is counted from its projection
-  !> on the secant.
-  pure subroutine project_virtual_node(contact, memory, points, p, projection, nodes, is_curved)
-    type(contact_t), intent(in) :: contact
+  !> Store the projections of points.
+  pure subroutine store_points(block, points)
+    type(arc_block_t), intent(in) :: block
+    type(contact_points_t), intent(inout) :: points
+    integer :: k
+
+    do k = 1, block%n
+      associate (p => block%point(k))
+        points%gap(p) = block%gap(k)
+        if (points%master_nodes(1, p) /= points%master_nodes(2, p)) then
+          points%master_weights(:, p) = [1.0_wp - block%xi(k), block%xi(k)]
+          points%normal(:, p) = block%normal(k, :)
+        else
+          points%slave_weights(:, p) = [1.0_wp - block%xi(k), block%xi(k)]
+          points%normal(:, p) = -block%normal(k, :)
+        end if
+      end associate
+    end do
+  end subroutine store_points
+
+  !> Type 4: the sub-segments of a virtual node have its gap and normal, and move along the master
+  !> together until their resultant acts along the normal.
+  pure subroutine store_virtual_nodes(positions, block, points)
+    real(wp), intent(in), contiguous :: positions(:, :)
+    type(arc_block_t), intent(in) :: block
+    type(contact_points_t), intent(inout) :: points
+    real(wp), dimension(4) :: own, way, master
+    real(wp) :: normal(2), d(2), t(2), lever, along, area
+    integer :: k, p, first, last
+
+    do k = 1, block%n
+      normal = block%normal(k, :)
+      first = block%point(k)
+      last = last_of_virtual_node(points, first)
+      lever = 0.0_wp
+      along = 0.0_wp
+      associate (a => points%slave_nodes(1, first), b => points%slave_nodes(2, first))
+        own = positions(:, a) + points%slave_weights(2, first)*(positions(:, b) - positions(:, a))
+      end associate
+      do p = first, last
+        associate (a => points%master_nodes(1, p), b => points%master_nodes(2, p))
+          master = positions(:, b) - positions(:, a)
+          way = own - positions(:, a) - points%master_weights(2, p)*master
+        end associate
+        t = master(1:2) + master(3:4)
+        d = way(1:2) + way(3:4)
+        points%gap(p) = block%gap(k)
+        points%normal(:, p) = normal
+        ! Until they are known their ways wait here.
+        points%master_weights(1, p) = 1.0_wp/sqrt(t(1)**2 + t(2)**2)
+        area = points%area(p)
+        lever = lever + area*(normal(1)*d(2) - normal(2)*d(1))
+        along = along + area*(normal(1)*t(2) - normal(2)*t(1))*points%master_weights(1, p)
+      end do
+      lever = lever/along
+      do p = first, last
+        points%master_weights(2, p) = points%master_weights(2, p) &
+          + lever*points%master_weights(1, p)
+        points%master_weights(1, p) = 1.0_wp - points%master_weights(2, p)
+      end do
+    end do
+  end subroutine store_virtual_nodes
+
+  !> What the gap of a node to the arc over a segment of the other surface has more than that to the
+  !> segment, m.
+  pure function offset_by_arc(memory, node, other) result(offset)
     type(contact_state_t), intent(in) :: memory
-    type(contact_points_t), intent(in) :: points
-    integer, intent(in) :: p
-    type(arc_projection_t), intent(out) :: projection
-    integer, intent(out) :: nodes(n_side) !! of the master segment
-    logical, intent(out) :: is_curved
-    integer :: point
+    integer, intent(in) :: node, other(n_side) !! local numbers
+    real(wp) :: offset
+    type(arc_block_t) :: block
+    type(arc_shape_t) :: shape
 
-    associate (status => memory%slave_status)
-      point = site_at(memory, points, p)
-      nodes = memory%n_slave + contact%master%segments(:, status%segment(point))
-      call project_on_arcs(memory, points%slave_nodes(:, p), &
-        points%slave_weights(2, p), nodes, projection, is_curved)
-      projection%xi = projection%xi - status%xi(point)
-    end associate
-  end subroutine project_virtual_node
+    offset = 0.0_wp
+    shape = present_shape(memory, other(1))
+    if (is_flat(shape)) return
+    block%n = 1
+    block%nodes(:, 1) = [node, node, other]
+    block%own_xi(1) = 0.0_wp
+    block%own_bend(1) = 0.0_wp
+    block%own_skew(1) = 0.0_wp
+    block%bend(1) = shape%bend
+    block%skew(1) = shape%skew
+    call project_block(memory%positions, block)
+    offset = block%offset(1)
+  end function offset_by_arc
 
 end module arcs_m

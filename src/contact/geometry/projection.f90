@@ -13,7 +13,8 @@ module projection_m
   public :: projection_t, local_coordinates, closest_projection, nearest_projection, &
     nearby_projection, stays_over, vector_of, face_projection, is_over_segment, follow_contact, &
     find_closest_segment, turns_gently, opposed_share, side_share, end_tolerance, gentle_turn, &
-    side_on, face_on, gentle_vertex, sharp_vertex, slave_side, master_side, round_off
+    side_on, face_on, gentle_vertex, sharp_vertex, slave_side, master_side, round_off, &
+    on_bisector, straight, penetrated_projection
 
   !> Overshoot accepted beyond the end of a surface, as a part of the segment; not clamped.
   real(wp), parameter :: end_tolerance = 0.01_wp
@@ -39,6 +40,11 @@ module projection_m
   !> Part of a segment next to its ends where round-off decides on which side of a node a position
   !> is.
   real(wp), parameter :: round_off = 1.0e-12_wp
+  !> Difference of the gaps to both segments of a corner, as a part of the segment, up to which a
+  !> position is on the bisector of the corner: equilibrium of symmetric bodies has nodes there.
+  real(wp), parameter :: on_bisector = 1.0e-9_wp
+  !> One minus the square of the cosine of the turn below which there is no corner.
+  real(wp), parameter :: straight = 1.0e-6_wp
 
   !> The projection of a point: weights (1 - xi, xi) on `segment`; point - projection = gap *
   !> normal.
@@ -273,11 +279,11 @@ contains
       < 0.0_wp)
   end function end_projection
 
-  !> Projection at the node between two segments, neither of which has the point over it. Outside of
-  !> a convex corner the gap is the distance. Inside of a re-entrant one it is minus the distance
-  !> and the normal points from the point to the node, so that P2 holds. The mean normal separates
-  !> both sides. The projection is that of the segment to whose normal its own is nearer, whose line
-  !> is farther away: either has the node.
+  !> Projection at the node between two segments: neither has the point over it, or both have and
+  !> are as near. Outside of a convex corner the gap is the distance. Inside of a corner it is minus
+  !> the distance and the normal points from the point to the node, so that P2 holds. The mean
+  !> normal separates both sides. The projection is that of the segment to whose normal its own is
+  !> nearer, whose line is farther away: either has the node. On the bisector it stays.
   pure function vertex_projection(local, other, segments) result(projection)
     type(local_coordinates_t), intent(in) :: local !! from a segment
     type(local_coordinates_t), intent(in) :: other !! from its neighbour at the corner
@@ -287,9 +293,9 @@ contains
 
     projection%segment = segments(1)
     projection%is_on = .true.
-    projection%xi = merge(0.0_wp, 1.0_wp, local%along < 0.0_wp)
+    projection%xi = merge(0.0_wp, 1.0_wp, local%along < 0.5_wp*local%square)
     d = local%d - projection%xi*local%t
-    if (other%across**2*local%square > local%across**2*other%square) then
+    if (excess_of(local, other) > bisector_width(local, other)) then
       projection%segment = segments(2)
       projection%xi = 1.0_wp - projection%xi
     end if
@@ -322,7 +328,7 @@ contains
       local = local_coordinates(surface, polyline, point, segment)
       if (local%along >= 0.0_wp .and. local%along <= local%square) then
         neighbour = nearer_face(surface, polyline, point, segment, local)
-        projection = face_projection(local, segment)
+        projection = penetrated_projection(surface, polyline, point, segment)
         if (neighbour == 0) return
         segment = neighbour
         cycle
@@ -345,6 +351,49 @@ contains
       segment = neighbour
     end do
   end function follow_contact
+
+  !> Projection of a position over a segment. On the bisector of a gentle convex corner, behind both
+  !> of its segments, it is that on the node, with a normal between theirs: else round-off would
+  !> choose between the two.
+  pure function penetrated_projection(surface, polyline, point, segment) result(projection)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: polyline(:, :)
+    real(wp), intent(in) :: point(4)
+    integer, intent(in) :: segment
+    type(projection_t) :: projection
+    type(local_coordinates_t) :: local, other
+    integer :: neighbour
+
+    local = local_coordinates(surface, polyline, point, segment)
+    projection = face_projection(local, segment)
+    if (-local%across <= min(local%along, local%square - local%along)) return
+    neighbour = merge(surface%previous(segment), surface%next(segment), &
+      local%along < 0.5_wp*local%square)
+    if (neighbour == 0) return
+    other = local_coordinates(surface, polyline, point, neighbour)
+    if (other%across >= 0.0_wp .or. .not. turns_gently(local%t, other%t)) return
+    if (abs(excess_of(local, other)) < bisector_width(local, other)) &
+      projection = vertex_projection(local, other, [segment, neighbour])
+  end function penetrated_projection
+
+  !> Square of the gap to a neighbour less that of the gap to a segment, times the squares of their
+  !> lengths, m^6.
+  pure function excess_of(local, other) result(excess)
+    type(local_coordinates_t), intent(in) :: local, other !! from the segment and from its neighbour
+    real(wp) :: excess
+
+    excess = other%across**2*local%square - local%across**2*other%square
+  end function excess_of
+
+  !> Largest excess on the bisector of the corner between both; zero on a line.
+  pure function bisector_width(local, other) result(width)
+    type(local_coordinates_t), intent(in) :: local, other
+    real(wp) :: width
+
+    width = 0.0_wp
+    if ((local%t(1)*other%t(1) + local%t(2)*other%t(2))**2 < (1.0_wp - straight)*local%square &
+      *other%square) width = 2.0_wp*on_bisector*abs(local%across)*local%square*other%square
+  end function bisector_width
 
   !> Whether two segments meet at a gentle corner: they turn by 60 degrees at most.
   pure function turns_gently(one, two)
@@ -378,7 +427,7 @@ contains
       if (other%along < 0.0_wp .or. other%along > other%square) cycle
       if (other%across >= 0.0_wp) cycle
       if (.not. turns_gently(local%t, other%t)) cycle
-      if (other%across**2*local%square >= local%across**2*other%square) cycle
+      if (excess_of(local, other) >= -bisector_width(local, other)) cycle
       neighbour = candidates(i)
       return
     end do

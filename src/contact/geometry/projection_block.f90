@@ -4,7 +4,7 @@
 !> together. Most positions need nothing else, or a look at a neighbour; the few left need a
 !> decision (projection_m).
 module projection_block_m
-  use projection_m, only : round_off
+  use projection_m, only : round_off, on_bisector, straight
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
@@ -56,7 +56,7 @@ contains
   end subroutine project_block
 
   !> Resolve ambiguous projections by the neighbours of their segments: those that are over their
-  !> segments and no nearer to a neighbour are kept.
+  !> segments and no nearer to a neighbour are kept, but on the bisector of a corner.
   pure subroutine resolve_ambiguous(surface, polyline, block)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_node) positions
@@ -98,12 +98,13 @@ contains
     real(wp), intent(in) :: beside(2, n_block) !! vectors of the neighbours, m
     type(projection_block_t), intent(inout) :: block
     real(wp) :: square, along, across, at, way, to_end, from_x, from_y, other_square, &
-      other_along, other_across, small, stays, total
+      other_along, other_across, small, width, product, stays, total
     integer :: k
 
     total = 0.0_wp
     !$omp simd private(square, along, across, at, way, to_end, from_x, from_y, &
-    !$omp   other_square, other_along, other_across, small, stays) reduction(+: total)
+    !$omp   other_square, other_along, other_across, small, width, product, stays) &
+    !$omp   reduction(+: total)
     do k = 1, block%n
       square = block%t(1, k)*block%t(1, k) + block%t(2, k)*block%t(2, k)
       along = block%d(1, k)*block%t(1, k) + block%d(2, k)*block%t(2, k)
@@ -118,8 +119,11 @@ contains
       other_across = from_x*beside(2, k) - from_y*beside(1, k)
       small = round_off*(from_x*from_x + from_y*from_y + other_square)
       stays = merge(1.0_wp, 0.0_wp, other_along >= -small)
+      product = beside(1, k)*block%t(1, k) + beside(2, k)*block%t(2, k)
+      width = merge(2.0_wp*on_bisector*square*other_square, 0.0_wp, product*product &
+        < (1.0_wp - straight)*square*other_square)
       stays = merge(1.0_wp, stays, other_across*other_across*square &
-        >= across*across*other_square)
+        - across*across*other_square >= -across*width)
       stays = merge(stays, 0.0_wp, across < 0.0_wp)
       block%ambiguous(k) = merge(0.0_wp, block%ambiguous(k), min(to_end + round_off*square, across &
         + (square - to_end), stays - 0.5_wp) >= 0.0_wp)

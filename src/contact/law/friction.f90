@@ -3,7 +3,6 @@
 !> the tractions of all points from it, of tangential springs that slip at a limit (regularised
 !> Coulomb). Only where the deck asks for friction.
 module friction_m
-  use arcs_m, only : arc_projection_t, project_virtual_node
   use nodal_forces_m, only : average_values, share_out
   use contact_state_m, only : contact_state_t, contact_scratch_t, n_side, site_at
   use contacts_m, only : contact_t, friction_rule_t
@@ -139,7 +138,8 @@ contains
           point = site_at(memory, points, p)
           nodes = memory%n_slave + contact%master%segments(:, status%segment(point))
           weights = [1.0_wp - status%xi(point), status%xi(point)]
-          if (memory%has%arcs) call follow_virtual_node(contact, memory, p, weights)
+          if (memory%has%arcs) weights = weights_along(points%slave_nodes(:, p), &
+            points%slave_weights(:, p), nodes, points%normal(:, p), memory%positions)
         end if
         distance = points%gap(p)
         if (memory%has%arcs) distance = distance_along(points%slave_nodes(:, p), &
@@ -151,19 +151,21 @@ contains
     end associate
   end subroutine find_slips
 
-  !> Weights of the projection of the virtual node that a point belongs to, between arcs.
-  pure subroutine follow_virtual_node(contact, memory, p, weights)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: p
-    real(wp), intent(inout) :: weights(n_side)
-    type(arc_projection_t) :: projection
-    integer :: nodes(n_side)
-    logical :: is_curved
+  !> Weights of the projection of a virtual node along the normal of an arc.
+  pure function weights_along(slave_nodes, slave_weights, master_nodes, normal, positions) &
+      result(weights)
+    integer, intent(in) :: slave_nodes(n_side), master_nodes(n_side)
+    real(wp), intent(in) :: slave_weights(n_side), normal(2)
+    real(wp), intent(in) :: positions(:, :) !! (4, n_node) of the interface
+    real(wp) :: weights(n_side)
+    real(wp) :: d(2), t(2)
 
-    call project_virtual_node(contact, memory, memory%points, p, projection, nodes, is_curved)
-    if (is_curved) weights = weights + [-projection%xi, projection%xi]
-  end subroutine follow_virtual_node
+    d = separation(positions(:, slave_nodes(1)), positions(:, master_nodes(1))) &
+      + slave_weights(2)*separation(positions(:, slave_nodes(2)), positions(:, slave_nodes(1)))
+    t = separation(positions(:, master_nodes(2)), positions(:, master_nodes(1)))
+    weights(2) = (normal(1)*d(2) - normal(2)*d(1))/(normal(1)*t(2) - normal(2)*t(1))
+    weights(1) = 1.0_wp - weights(2)
+  end function weights_along
 
   !> Distance of both sides of a point along its normal, m: that of the secants, where gaps are
   !> those of arcs.

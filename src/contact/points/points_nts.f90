@@ -6,7 +6,7 @@
 module points_nts_m
   use contact_state_m, only : contact_state_t, contact_points_t
   use contacts_m, only : contact_t
-  use projection_m, only : projection_t, vector_of, opposed_share, round_off
+  use projection_m, only : projection_t, vector_of, opposed_share, on_bisector
   use geometry_m, only : separation
   use kinds_m, only : wp
   use overlaps_m, only : overlap_t, find_overlaps, room_for_overlaps
@@ -134,7 +134,7 @@ contains
     integer :: ends(2), at(2), node, n, k, i
 
     ends = contact%slave%segments(:, s)
-    call find_overlaps(contact, memory, s, contact%strict, round_off, overlaps, n)
+    call find_overlaps(contact, memory, s, contact%strict, on_bisector, overlaps, n)
     t = separation(memory%positions(:, ends(2)), memory%positions(:, ends(1)))
     length = sqrt(t(1)**2 + t(2)**2)
     node = 0

@@ -5,8 +5,8 @@
 !> that it had before (doc/theory/contact.md, section 3.3).
 module entry_m
   use search_state_m, only : contact_status_t, candidates_t, pass_t
-  use projection_m, only : projection_t, nearest_projection, face_projection, vector_of, &
-    turns_gently, side_on, face_on, end_tolerance, round_off
+  use projection_m, only : projection_t, nearest_projection, penetrated_projection, &
+    face_projection, vector_of, turns_gently, side_on, face_on, end_tolerance, round_off
   use geometry_m, only : local_coordinates_t, coordinates_on_segment, local_gap, local_normal, &
     closest_distance, segment_length
   use kinds_m, only : wp
@@ -102,7 +102,11 @@ contains
         last = pairs%first(segments(k) + 1) - 1
       end do
     end associate
-    if (found%is_active) return
+    if (found%is_active) then
+      found%projection = penetrated_projection(other, positions(:, status%pass%other_at + 1:), &
+        point, found%projection%segment)
+      return
+    end if
     ! Without candidates the next list is waited for. What lists hold beyond the search radius is a
     ! matter of when they were made.
     found%distance = merge(status%reach, unpaired, found%nearest > 0)

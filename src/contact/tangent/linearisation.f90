@@ -4,8 +4,8 @@
 !> doc/theory/contact.md, section 9). What the formulations make of these, areas above all, is
 !> built from the same parts. All in dual numbers, so that each formula stands here once.
 module linearisation_m
-  use arcs_m, only : arc_shape_t, present_shape, sine_at, sine_terms, is_flat, flat_arc, steepest
-  use contact_state_m, only : contact_state_t
+  use arcs_m, only : present_shape, sine_terms, is_flat, steepest
+  use contact_state_m, only : contact_state_t, arc_shape_t, flat_arc
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
   use projection_m, only : side_on, face_on, gentle_vertex, sharp_vertex, round_off
@@ -148,7 +148,7 @@ contains
     is_corner = .not. (abs(xi) > 0.0_wp .and. abs(xi - 1.0_wp) > 0.0_wp)
     if (memory%has%arcs) is_corner = is_corner &
       .and. is_flat(present_shape(memory, point%nodes(3)))
-    if (is_corner) is_corner = abs(projection%xi%value - 0.5_wp) > 0.5_wp + round_off
+    if (is_corner) is_corner = abs(projection%xi%value - xi) > round_off
     if (is_corner .and. abs(gap) > max(memory%closed_gap, tiny(1.0_wp))) then
       projection%xi = constant(xi)
       d = d - xi*t
@@ -217,9 +217,11 @@ contains
     type(dual_t), intent(in) :: t(2) !! the segment, m
     type(dual_t), intent(out) :: bend, skew
     type(dual_t) :: sines(2), beside(2), turn
+    type(arc_shape_t) :: shape
     integer :: ends(2), k
 
     ends = point%nodes(owner:owner + 1)
+    shape = present_shape(memory, ends(1))
     sines = constant([0.0_wp, 0.0_wp])
     associate (arcs => memory%arcs, share => memory%arcs%share(:, ends(1)))
       do k = 1, 2
@@ -235,7 +237,7 @@ contains
         associate (terms => sine_terms(share(k)))
           sines(k) = (2.0_wp*share(k))*turn/sqrt(turn*turn*(terms(2)*turn*turn + terms(1)) + 1.0_wp)
         end associate
-        associate (value => sine_at(memory, ends(k), share(k)))
+        associate (value => 0.5_wp*shape%bend + merge(1.0_wp, -1.0_wp, k == 1)*shape%skew)
           if (abs(sines(k)%value) > 0.0_wp) sines(k) = (value/sines(k)%value)*sines(k)
         end associate
       end do

@@ -9,7 +9,7 @@ module tangent_segments_m
   use search_state_m, only : active, segment_point_at
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
-  use projection_m, only : slave_side, master_side, round_off
+  use projection_m, only : slave_side, master_side, round_off, on_bisector
   use kinds_m, only : wp
   use linearisation_m, only : linearised_point_t, linearised_list_t, linearised_projection_t, &
     append_point, difference, length_between, project, project_point, project_on_arcs, &
@@ -66,7 +66,7 @@ contains
     type(dual_t) :: xi(2), half
     integer :: breakpoints(2), n, k, i
 
-    call find_overlaps(contact, memory, s, contact%strict, round_off, overlaps, n)
+    call find_overlaps(contact, memory, s, contact%strict, on_bisector, overlaps, n)
     do k = 1, n
       if (.not. overlaps(k)%high > overlaps(k)%low) cycle
       if (.not. contact%strict .and. .not. overlaps(k)%share > 0.0_wp) cycle
