@@ -10,11 +10,14 @@ module friction_m
   use geometry_m, only : separation
   use kinds_m, only : wp
   use law_state_m, only : friction_memory_t, is_open, sticks, slips
+  use projection_m, only : round_off
+  use surfaces_m, only : surface_t
   use tributary_lengths_m, only : nodal_area
   implicit none
   private
   public :: store_previous_tractions, form_tractions, has_slipped, let_hold, coefficient_of, &
-    has_decay, sliding_speed, slider_t, return_slider, linearise_traction, goes_on, slip_of
+    has_decay, sliding_speed, slider_t, return_slider, linearise_traction, goes_on, slip_of, &
+    node_beyond
 
   !> What slips on in the first tangent of a step, in which nothing has moved yet.
   integer, parameter :: goes_on = -1
@@ -128,7 +131,7 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: weights(n_side), distance
-    integer :: nodes(n_side), p, point
+    integer :: nodes(n_side), p, point, beyond
 
     associate (points => memory%points, status => memory%slave_status)
       do p = 1, points%n
@@ -141,22 +144,71 @@ contains
           if (memory%has%arcs) weights = weights_along(points%slave_nodes(:, p), &
             points%slave_weights(:, p), nodes, points%normal(:, p), memory%positions)
         end if
+        beyond = 0
+        if (.not. abs(weights(1)*weights(2)) > 0.0_wp) &
+          beyond = node_beyond(contact, memory, nodes, weights(2), points%normal(:, p))
         distance = points%gap(p)
         if (memory%has%arcs) distance = distance_along(points%slave_nodes(:, p), &
           points%slave_weights(:, p), nodes, weights, points%normal(:, p), memory%positions)
         points%traction(p) = slip_of(points%slave_nodes(1, p), points%slave_weights(1, p), &
           nodes, weights, points%normal(1, p), distance, memory%scratch%increment, &
           memory%positions)
+        if (beyond == 0) cycle
+        ! On a vertex the mean of the turns of both segments counts.
+        nodes = merge([beyond, nodes(1)], [nodes(2), beyond], weights(1) > 0.5_wp)
+        points%traction(p) = 0.5_wp*(points%traction(p) + slip_of(points%slave_nodes(1, p), &
+          points%slave_weights(1, p), nodes, weights([2, 1]), points%normal(1, p), distance, &
+          memory%scratch%increment, memory%positions))
       end do
     end associate
   end subroutine find_slips
+
+  !> The other node of the neighbour of a segment at a vertex that is the projection of a point,
+  !> with a normal that is not that of the segment; 0: none.
+  pure function node_beyond(contact, memory, nodes, xi, normal) result(node)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: nodes(n_side)  !! of the segment, local numbers
+    real(wp), intent(in) :: xi, normal(2) !! projection on it
+    integer :: node
+    real(wp) :: t(2)
+
+    node = 0
+    if (nodes(1) == nodes(2)) return
+    t = separation(memory%positions(:, nodes(2)), memory%positions(:, nodes(1)))
+    if (dot_product(normal, t)**2 <= round_off**2*dot_product(t, t)) return
+    if (nodes(1) > memory%n_slave) then
+      node = beside(contact%master, nodes - memory%n_slave, xi)
+      if (node > 0) node = node + memory%n_slave
+    else
+      node = beside(contact%slave, nodes, xi)
+    end if
+
+  contains
+
+    !> The other node of the neighbour of a segment of a surface.
+    pure integer function beside(surface, nodes, xi)
+      type(surface_t), intent(in) :: surface
+      integer, intent(in) :: nodes(n_side)
+      real(wp), intent(in) :: xi
+
+      if (xi < 0.5_wp) then
+        beside = surface%incoming(nodes(1))
+        if (beside > 0) beside = surface%segments(1, beside)
+      else
+        beside = surface%outgoing(nodes(2))
+        if (beside > 0) beside = surface%segments(2, beside)
+      end if
+    end function beside
+
+  end function node_beyond
 
   !> Weights of the projection of a virtual node along the normal of an arc.
   pure function weights_along(slave_nodes, slave_weights, master_nodes, normal, positions) &
       result(weights)
     integer, intent(in) :: slave_nodes(n_side), master_nodes(n_side)
     real(wp), intent(in) :: slave_weights(n_side), normal(2)
-    real(wp), intent(in) :: positions(:, :) !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     real(wp) :: weights(n_side)
     real(wp) :: d(2), t(2)
 

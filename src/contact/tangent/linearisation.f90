@@ -6,9 +6,11 @@
 module linearisation_m
   use arcs_m, only : present_shape, sine_terms, is_flat, steepest
   use contact_state_m, only : contact_state_t, arc_shape_t, flat_arc
+  use contacts_m, only : contact_t
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
   use projection_m, only : side_on, face_on, gentle_vertex, sharp_vertex, round_off
+  use friction_m, only : node_beyond
   use geometry_m, only : separation
   use kinds_m, only : wp
   use tributary_lengths_m, only : radius_of
@@ -27,6 +29,8 @@ module linearisation_m
   type :: linearised_point_t
     integer :: nodes(n_slot) = 0   !! local numbers, 0 = slot not used
     integer :: master_slot = 3
+    logical :: is_on_vertex = .false. !! projection on a vertex
+    type(dual_t) :: turn_beyond    !! in the step, of the neighbour there, which has slot 7
     integer :: site = 0            !! of its traction, and of the tie that it may be left to
     real(wp) :: stiffness = 0.0_wp !! N/m^2 (N/m for type 1)
     type(dual_t) :: slave_xi       !! weights of slots 1, 2 are (1 - xi, xi)
@@ -134,7 +138,8 @@ contains
   !> Gap, site and normal of a point over the segment in slots 3, 4, like those known: on the line
   !> of the segment, or at its node at a corner, where the normal points along the connection. A
   !> corner so close that its normal means nothing stands on the line.
-  pure subroutine project_point(memory, xi, gap, point)
+  pure subroutine project_point(contact, memory, xi, gap, point)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     real(wp), intent(in) :: xi, gap !! known; gap in m
     type(linearised_point_t), intent(inout) :: point
@@ -145,6 +150,7 @@ contains
     d = way_from(memory%positions, point, 3)
     t = difference(memory%positions, point, 4, 3)
     projection = project(d, t)
+    point%is_on_vertex = .false.
     is_corner = .not. (abs(xi) > 0.0_wp .and. abs(xi - 1.0_wp) > 0.0_wp)
     if (memory%has%arcs) is_corner = is_corner &
       .and. is_flat(present_shape(memory, point%nodes(3)))
@@ -154,6 +160,13 @@ contains
       d = d - xi*t
       projection%gap = sign(1.0_wp, gap)*sqrt(d(1)*d(1) + d(2)*d(2))
       projection%normal = [d(1)/projection%gap, d(2)/projection%gap]
+      if (memory%has%friction) then
+        point%nodes(7) = node_beyond(contact, memory, point%nodes(3:4), xi, &
+          projection%normal%value)
+        point%is_on_vertex = point%nodes(7) > 0
+        if (point%is_on_vertex) point%turn_beyond = turn_of(memory%positions, &
+          memory%scratch%increment, point, merge(7, 4, xi < 0.5_wp), merge(3, 7, xi < 0.5_wp))
+      end if
     end if
     point%distance = projection%gap
     point%shift = constant(0.0_wp)
@@ -298,7 +311,7 @@ contains
     real(wp), intent(in), contiguous :: increments(:, :) !! (2, n_node) displacements of the step, m
     type(linearised_point_t), intent(in) :: point
     type(dual_t) :: slip
-    type(dual_t) :: relative(2), t(2), turn(2)
+    type(dual_t) :: relative(2), turn
     integer :: owner
 
     relative = moved(increments, point, 1) - moved(increments, point, 3)
@@ -310,11 +323,23 @@ contains
       relative = relative &
         - point%master_xi*(moved(increments, point, 4) - moved(increments, point, 3))
     end if
-    t = difference(positions, point, owner + 1, owner)
-    turn = moved(increments, point, owner + 1) - moved(increments, point, owner)
-    slip = point%normal(1)*relative(2) - point%normal(2)*relative(1) &
-      + point%distance*(t(2)*turn(1) - t(1)*turn(2))/(t(1)*t(1) + t(2)*t(2))
+    turn = turn_of(positions, increments, point, owner, owner + 1)
+    if (point%is_on_vertex) turn = 0.5_wp*(turn + point%turn_beyond)
+    slip = point%normal(1)*relative(2) - point%normal(2)*relative(1) + point%distance*turn
   end function slip_of
+
+  !> Turn in the step of the segment from the node in slot i to that in slot j, clockwise.
+  pure function turn_of(positions, increments, point, i, j) result(turn)
+    real(wp), intent(in), contiguous :: positions(:, :)  !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: increments(:, :) !! (2, n_node) displacements of the step, m
+    type(linearised_point_t), intent(in) :: point
+    integer, intent(in) :: i, j
+    type(dual_t) :: turn, t(2), change(2)
+
+    t = difference(positions, point, j, i)
+    change = moved(increments, point, j) - moved(increments, point, i)
+    turn = (t(2)*change(1) - t(1)*change(2))/(t(1)*t(1) + t(2)*t(2))
+  end function turn_of
 
   !> Displacement of the node in slot i in the step, m.
   pure function moved(increments, point, i) result(du)

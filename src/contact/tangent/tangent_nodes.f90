@@ -34,7 +34,7 @@ contains
     integer :: p
 
     do p = 1, memory%points%n
-      point = linearise_node(memory, p)
+      point = linearise_node(contact, memory, p)
       associate (is_closed => memory%slave_status%pass%is_closed, &
         is_axisymmetric => contact%is_axisymmetric)
         if (point%site > memory%n_slave) then
@@ -60,7 +60,8 @@ contains
   end subroutine linearise_nodes
 
   !> The p-th point of the list, which stands at a node, with an area of 1.
-  pure function linearise_node(memory, p) result(point)
+  pure function linearise_node(contact, memory, p) result(point)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: p
     type(linearised_point_t) :: point
@@ -72,7 +73,7 @@ contains
       point%stiffness = points%stiffness(p)
       point%slave_xi = constant(0.0_wp)
       point%area = constant(1.0_wp)
-      call project_point(memory, points%master_weights(2, p), points%gap(p), point)
+      call project_point(contact, memory, points%master_weights(2, p), points%gap(p), point)
     end associate
   end function linearise_node
 
@@ -166,7 +167,7 @@ contains
         point%slave_xi = centroid_of(memory%positions, point, 1, 2, &
           constant([end_of_half(at, 2), end_of_half(at, 1)]))
       end if
-      call project_point(memory, status%xi(virtual_node), status%gap(virtual_node), point)
+      call project_point(contact, memory, status%xi(virtual_node), status%gap(virtual_node), point)
     end associate
   end function linearise_virtual_node
 

@@ -46,7 +46,7 @@ contains
         if (has_area(node)) cycle
         if (.not. is_sharp_vertex(contact%slave, memory%positions, &
           memory%slave_status%normal(:, node), node)) cycle
-        point = linearise_node(memory, p)
+        point = linearise_node(contact, memory, p)
         call linearise_length(contact%slave, 0, contact%is_axisymmetric, .false., &
           memory%positions, point)
         call append_point(list, point)
@@ -126,7 +126,7 @@ contains
       point%nodes(3:4) = memory%n_slave + contact%master%segments(:, status%segment(node))
       point%site = node
       point%slave_xi = constant(k - 1.0_wp)
-      call project_point(memory, status%xi(node), status%gap(node), point)
+      call project_point(contact, memory, status%xi(node), status%gap(node), point)
     end associate
   end subroutine move_to_end
 
@@ -148,7 +148,7 @@ contains
       else
         call linearise_on_whole_segment(contact, memory, s, p, list)
       end if
-      if (resolves_vertices(contact)) call linearise_vertices(memory, &
+      if (resolves_vertices(contact)) call linearise_vertices(contact, memory, &
         contact%slave%segments(:, s), first, list)
     end do
   end subroutine linearise_gauss_points
@@ -225,7 +225,7 @@ contains
 
     associate (points => memory%points)
       point%nodes(3:4) = points%master_nodes(:, p)
-      call project_point(memory, points%master_weights(2, p), points%gap(p), point)
+      call project_point(contact, memory, points%master_weights(2, p), points%gap(p), point)
     end associate
     point%area = length*share_of(cosine_between(difference(memory%positions, point, 2, 1), &
       [-point%normal(2), point%normal(1)]))
@@ -236,7 +236,8 @@ contains
   !> Types 6 and 7: the points at the nodes of a segment at a sharp vertex, one for each point that
   !> shifts area to them. The share is held, and so is what the area of such a point owes to
   !> its own projection.
-  pure subroutine linearise_vertices(memory, ends, first, list)
+  pure subroutine linearise_vertices(contact, memory, ends, first, list)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2) !! nodes of the segment
     integer, intent(in) :: first   !! of its points, the last ones on the list
@@ -267,7 +268,7 @@ contains
           point%area%slope(5:8) = 0.0_wp
         point%nodes(3:4) = memory%points%master_nodes(:, at_end(k))
         point%slave_xi = constant(real(k - 1, wp))
-        call project_point(memory, memory%points%master_weights(2, at_end(k)), &
+        call project_point(contact, memory, memory%points%master_weights(2, at_end(k)), &
           memory%points%gap(at_end(k)), point)
         call append_point(list, point)
       end do
