@@ -3,7 +3,7 @@
 !> Adding one is a number in `contacts_m`, a row of `formulations`, and a `use` and a `case` for
 !> either (doc/add_a_formulation.md).
 module contact_dispatch_m
-  use arcs_m, only : curve_points
+  use arc_points_m, only : curve_points
   use assembly_m, only : add_point_tangents, add_nodal_tangents
   use contact_law_m, only : law_penalty
   use contact_state_m, only : contact_state_t, contact_points_t, allocate_points, make_room

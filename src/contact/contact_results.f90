@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Results of an interface for the writers: resultants, and values of its nodes.
 module contact_results_m
-  use arcs_m, only : offset_by_arc
+  use arc_points_m, only : offset_by_arc
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use search_state_m, only : candidates_t, active
   use contacts_m, only : contact_t

@@ -102,9 +102,9 @@ module contact_state_m
     real(wp), allocatable :: height(:)    !! (n_slave + n_master) how far an arc may stand off its
                                           !! segment, m: gaps below that make contact points
     real(wp) :: highest = 0.0_wp          !! of both sides together, m
-    integer, allocatable :: around(:, :)  !! (4, n_slave + n_master) nodes of the curved segment that
-                                          !! starts at a node, amid those beside; its own twice at
-                                          !! the end of an open surface
+    integer, allocatable :: around(:, :)  !! (4, n_slave + n_master) nodes of a curved segment by
+                                          !! its first node, amid those beside; its own twice at the
+                                          !! end of an open surface
     type(arc_shape_t), allocatable :: shape(:) !! (n_slave + n_master) of the segment that starts at
                                           !! a node, in this call, where points are on it
     logical, allocatable :: is_formed(:)  !! (n_slave + n_master) it has been formed in this call

@@ -37,7 +37,7 @@ EXEMPT = {
     "controls_t": {"implicit": "runs of several processes are explicit, its default"},
 }
 #: types of src/state that hold no memory
-WITHOUT_MEMORY = {"arcs_t", "contact_scratch_t", "features_t", "candidates_t", "pass_t", "spring_t", "snapshot_t",
+WITHOUT_MEMORY = {"arc_shape_t", "arcs_t", "contact_scratch_t", "features_t", "candidates_t", "pass_t", "spring_t", "snapshot_t",
                   "interface_result_t", "part_result_t", "slave_result_t",
                   "wall_result_t", "friction_result_t", "element_result_t", "body_result_t", "section_result_t",
                   "energies_t", "remote_t", "inside_tests_t"}
