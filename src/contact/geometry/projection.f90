@@ -42,7 +42,7 @@ module projection_m
   real(wp), parameter :: round_off = 1.0e-12_wp
   !> Difference of the gaps to both segments of a corner, as a part of the segment, up to which a
   !> position is on the bisector of the corner: equilibrium of symmetric bodies has nodes there.
-  real(wp), parameter :: on_bisector = 1.0e-9_wp
+  real(wp), parameter :: on_bisector = 1.0e-10_wp
   !> One minus the square of the cosine of the turn below which there is no corner.
   real(wp), parameter :: straight = 1.0e-6_wp
 

@@ -25,6 +25,9 @@ TINY = 1.0e-300
 MOST_POINTS = 10     # of a segment
 SHARP = np.cos(np.radians(60.0))  # a projection does not walk across corners that turn more
 
+#: Difference of the gaps to both segments of a corner on its bisector, as a part of the segment.
+BISECTOR = 1.0e-10
+
 
 def cross(a, b):
     return a[0] * b[1] - a[1] * b[0]
@@ -221,13 +224,19 @@ def opposed_edge(chain, k, at, height, own):
     return best if best != k and -SHALLOW * chain.length[best] < height[best] < 0.0 else None
 
 
+def is_on_bisector(chain, k, other, height):
+    """Whether a point behind both segments of a corner that is not sharp is as near to both: it belongs to the vertex."""
+    return not chain.is_sharp(k, other) and abs(height[k] - height[other]) < BISECTOR * chain.length[k] \
+        and np.dot(chain.normal[k], chain.normal[other]) ** 2 < 1.0 - 1.0e-6
+
+
 def one_foot(point, chain, k, at, height):
     """The projection on segment k or its vertex, given coordinates and heights over all segments."""
-    if 0.0 <= at[k] <= 1.0:
-        return Projection(k, at[k], height[k], chain.normal[k])
-    step = 1 if at[k] > 1.0 else -1
+    step = 1 if at[k] > 0.5 else -1
     other = chain.next(k, step)
     is_inside = other is not None and height[k] < 0.0 and height[other] < 0.0
+    if 0.0 <= at[k] <= 1.0 and not (is_inside and is_on_bisector(chain, k, other, height)):
+        return Projection(k, at[k], height[k], chain.normal[k])
     if other is None or (chain.is_sharp(k, other) and height[k] < 0.0 and not is_inside):
         if -OVERSHOOT <= at[k] <= 1.0 + OVERSHOOT:  # the face ends here
             return Projection(k, at[k], height[k], chain.normal[k])
