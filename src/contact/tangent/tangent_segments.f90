@@ -102,6 +102,7 @@ contains
     type(dual_t) :: d(2), t(2)
 
     point%nodes(3:4) = [node, 0]
+    point%is_on_vertex = .false.
     point%site = node
     d = difference(memory%positions, point, 3, 1)
     t = difference(memory%positions, point, 2, 1)
