@@ -90,7 +90,8 @@ contains
             if (.not. counts) cycle
             if (has_entered(status, own, other, positions, increments, local, i, segment)) then
               if (found%is_active .and. abs(gap) >= abs(found%projection%gap)) cycle
-              found%projection = face_projection(local, segment)
+              found%projection = penetrated_projection(other, positions(:, pass%other_at + 1:), &
+                point, segment)
               found%is_active = .true.
             else if (.not. found%is_active .and. abs(gap) < found%depth) then
               found%behind = segment
@@ -102,11 +103,7 @@ contains
         last = pairs%first(segments(k) + 1) - 1
       end do
     end associate
-    if (found%is_active) then
-      found%projection = penetrated_projection(other, positions(:, status%pass%other_at + 1:), &
-        point, found%projection%segment)
-      return
-    end if
+    if (found%is_active) return
     ! Without candidates the next list is waited for. What lists hold beyond the search radius is a
     ! matter of when they were made.
     found%distance = merge(status%reach, unpaired, found%nearest > 0)
