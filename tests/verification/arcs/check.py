@@ -255,10 +255,43 @@ def check_outlines(run):
         run.true(f"{name}: arcs on fillets alone", reported(f"{arcs} of {len(outline)}", "24 of 24") in log_of(run.program(deck)))
 
 
+def check_pin(run):
+    """A pin with a rounded nose goes through a bore with a sharp edge, axisymmetric, without friction: no axial force while it
+    slides in the bore. Virtual nodes of the nose come through the edge's two faces."""
+    end, nose, radius = 300.0, 0.2, 1.005
+    angles = np.linspace(-0.25 * np.pi, 0.0, 7)
+    arc = np.stack([radius - nose + nose * np.cos(angles), 1.001 + nose * (np.sin(angles) + np.sqrt(0.5))], axis=1)
+    shank = [(radius, arc[-1, 1] + (4.001 - arc[-1, 1]) * k / 30.0) for k in range(1, 31)]
+    flank = np.vstack([arc, shank])
+    for kind in TYPES if run.is_full else (2, 4, 6):
+        deck = Deck("pin pressed into a bore").control(end, scale=0.8).hourglass(4, 0.1)
+        deck.add("*SECTION_SHELL", (1, 15), (1.0,)).add("*DAMPING_GLOBAL", (0, 0.3))
+        for part in (1, 2):
+            deck.add("*PART", f"part {part}", (part, 1, part)).elastic(1.0, 1.0, 0.3, part)
+        pin = deck.mesh(*rows([(x * k / 8.0, y) for x, y in flank for k in range(9)], 9)).reshape(-1, 9)
+        hub = deck.mesh(*rows([(1.0 + 0.1 * k, y) for y in np.linspace(0.0, 1.0, 17) for k in range(11)], 11), part=2)
+        hub = hub.reshape(-1, 11)
+        deck.fix(pin[:, 0], x=1).fix(hub[0, 5:], y=1)
+        deck.node_set(1, pin[:, -1]).node_set(2, [*hub[-1, 3::-1], *hub[-2::-1, 0]]).node_set(3, pin[-1])
+        deck.curve(1, [(0.0, 0.0), (0.9 * end, -2.0), (2.0 * end, -2.0)])
+        deck.add("*BOUNDARY_PRESCRIBED_MOTION_SET", (3, 2, 2, 1, 1.0)).contact(1, 2, kind, 5.0)
+        force = run.program(deck.output(plot=end, rcforc=1.0)).table("rcforc")
+        last = (force["side"] == "slave") & (force["time"] > 0.98 * end)
+        run.check(f"{TYPES[kind]}: axial force of a pin in a bore over the radial one",
+                  np.abs(force["fy"][last]).max() / np.abs(force["fx"][last]).max(), 0.0)
+
+
+def rows(nodes, width):
+    """Nodes in rows from below, each of so many, and their quads."""
+    first = [row * width + k for row in range(len(nodes) // width - 1) for k in range(width - 1)]
+    return np.array(nodes), np.array([[i, i + 1, i + width + 1, i + width] for i in first])
+
+
 def check(run):
     check_fits(run)
     check_explicit(run)
     check_spin(run)
     check_torque(run)
     check_rolling(run)
+    check_pin(run)
     check_outlines(run)
