@@ -107,7 +107,9 @@ module contact_state_m
                                           !! end of an open surface
     type(arc_shape_t), allocatable :: shape(:) !! (n_slave + n_master) of the segment that starts at
                                           !! a node, in this call, where points are on it
-    logical, allocatable :: is_formed(:)  !! (n_slave + n_master) it has been formed in this call
+    integer, allocatable :: formed_in(:)  !! (n_slave + n_master) call that has formed it last; huge
+                                          !! where it is flat
+    integer :: call = 0                   !! number of calls that have formed shapes
   end type arcs_t
 
   !> What an interface has beside springs along the normal at its points: by its formulation and by

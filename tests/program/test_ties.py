@@ -131,7 +131,7 @@ LIES = {
     "first": (lambda old: old[:-1].copy(), "expected here"),
     "lag": (lambda old: old[:, :-1].copy(), "expected here"),
     "offset": (lambda old: old[:-1].copy(), "expected here"),
-    "state": (lambda old: old * 0 + 2, "mean nothing"),
+    "state": (lambda old: old * 0 + 2, "do not exist"),
     "site": (lambda old: old * 0 + 10**6, "no place"),
     "to_stress": (lambda old: np.append(old, 1.0), "expected here"),
     "owner": (lambda old: old * 0 - 1, "no node"),

@@ -173,19 +173,19 @@ contains
 
     n = 0
     associate (arcs => memory%arcs, status => memory%slave_status)
-      arcs%is_formed = .not. abs(arcs%share(1, :)) > 0.0_wp
+      arcs%call = arcs%call + 1
       do p = 1, points%n
         associate (slave => points%slave_nodes(:, p), master => points%master_nodes(:, p))
-          if (.not. arcs%is_formed(master(1)) .and. master(1) /= master(2)) &
+          if (arcs%formed_in(master(1)) < arcs%call .and. master(1) /= master(2)) &
             call list_segment(master(1), memory%positions, arcs, listed, n)
-          if (.not. arcs%is_formed(slave(1)) .and. slave(1) /= slave(2)) &
+          if (arcs%formed_in(slave(1)) < arcs%call .and. slave(1) /= slave(2)) &
             call list_segment(slave(1), memory%positions, arcs, listed, n)
         end associate
       end do
       if (memory%has%virtual_nodes) then
         do p = 1, status%n_active
           below = nodes_below(contact, memory, status%active_points(p))
-          if (.not. arcs%is_formed(below(1))) &
+          if (arcs%formed_in(below(1)) < arcs%call) &
             call list_segment(below(1), memory%positions, arcs, listed, n)
         end do
       end if
@@ -206,7 +206,7 @@ contains
     end if
     n = n + 1
     listed(n) = first
-    arcs%is_formed(first) = .true.
+    arcs%formed_in(first) = arcs%call
   end subroutine list_segment
 
   !> Form the shapes of some segments and keep them.
