@@ -118,7 +118,7 @@ def test_no_failure_is_reported_too(slideline, tmp_path):
 
 def test_check_counts_in_words(exe, tmp_path):
     deck = block(("*MAT_ELASTIC", (1, 1000.0, 1.0e9, 0.3)), GRUNEISEN, eos=0, n=1)
-    deck.node_set(1, [1, 2]).node_set(2, [4, 3]).contact(1, 2, 1, 1.0e3)
+    deck.node_set(1, [1, 2]).node_set(2, [4, 3]).contact(1, 2, 1, 1.0e8)
     (tmp_path / "one.k").write_text(deck.text())
     done = subprocess.run([exe, "check", "one.k"], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0 and "1 element, 4 nodes, 1 interface, 1 warning\n" in done.stdout, done.stdout

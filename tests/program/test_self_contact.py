@@ -94,7 +94,7 @@ def test_stock_keywords(slideline, tmp_path, keyword, kind):
         done = slideline(f"d={folder}", deck=forks(kind, friction=0.2, **words))
         assert done.returncode == 0, done.stderr
     # FD 0 is 0 there: without friction that decays nothing slides, so only the deck's own words differ
-    assert "with itself" in (tmp_path / "stock/job.log").read_text()
+    assert "self contact" in (tmp_path / "stock/job.log").read_text()
     done = slideline("d=other", "ctype=4", deck=forks(kind, keyword=keyword))
     assert done.returncode == 0, done.stderr
     text = (tmp_path / "other/job.effective.k").read_text()
