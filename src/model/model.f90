@@ -79,8 +79,13 @@ contains
   pure function is_sheet(model)
     type(model_t), intent(in) :: model
     logical :: is_sheet
+    integer :: i
 
-    is_sheet = any(model%sections(model%parts%section)%is_plane_stress)
+    is_sheet = .false.
+    do i = 1, size(model%parts)
+      if (model%parts(i)%section > 0) &
+        is_sheet = is_sheet .or. model%sections(model%parts(i)%section)%is_plane_stress
+    end do
   end function is_sheet
 
   !> Visit the components of the model, without sets, which are resolved in conditions and surfaces.
