@@ -222,7 +222,9 @@ contains
 
     first = elements%eos_start(i_chunk)
     pressure = elements%eos_state(first + chunk_size:first + 2*chunk_size - 1)
-    thickness = [(thickness_strain_of_slot(model, elements, (i_chunk - 1)*chunk_size + k), k=1, &
+    thickness = 0.0_wp
+    if (model%materials(model%parts(model%layout%chunk_part(i_chunk))%material)%is_plane_stress) &
+      thickness = [(thickness_strain_of_slot(model, elements, (i_chunk - 1)*chunk_size + k), k=1, &
       chunk_size)]
     associate (erosion => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material) &
       %erosion)

@@ -132,7 +132,7 @@ LIES = {
     "lag": (lambda old: old[:, :-1].copy(), "expected here"),
     "offset": (lambda old: old[:-1].copy(), "expected here"),
     "state": (lambda old: old * 0 + 2, "do not exist"),
-    "site": (lambda old: old * 0 + 10**6, "no place"),
+    "site": (lambda old: old * 0 + 10**6, "no site"),
     "to_stress": (lambda old: np.append(old, 1.0), "expected here"),
     "owner": (lambda old: old * 0 - 1, "no node"),
 }

@@ -97,12 +97,12 @@ def write(results: Results, path: str | os.PathLike, degrees: float = 270.0, sec
 def draw(results: Results, path: str | os.PathLike, name: str | None = None, state: str = "-1", degrees: float = 270.0,
          sectors: int = 36) -> None:
     """Draw one state as a solid, by VTK: a picture (.png) coloured by a field, seen from the side that is cut open."""
+    index, angles, (cells, offsets, types) = results.state_index(state), *plane_angles(results, degrees, sectors)
     try:
         import vtk
         from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
     except ImportError:
         raise UserError("a picture takes VTK: pip install vtk; a .vtkhdf file does not") from None
-    index, angles, (cells, offsets, types) = results.state_index(state), *plane_angles(results, degrees, sectors)
     field = scalar_field(results, name or default_field(results))
     values = np.tile(field.values[index], len(angles) if field.at_nodes else sectors)
     grid, points, array = vtk.vtkUnstructuredGrid(), vtk.vtkPoints(), vtk.vtkCellArray()

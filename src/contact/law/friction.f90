@@ -3,6 +3,7 @@
 !> the tractions of all points from it, of tangential springs that slip at a limit (regularised
 !> Coulomb). Only where the deck asks for friction.
 module friction_m
+  use arcs_m, only : is_flat
   use nodal_forces_m, only : average_values, share_out
   use contact_state_m, only : contact_state_t, contact_scratch_t, n_side, site_at
   use contacts_m, only : contact_t, friction_rule_t
@@ -132,6 +133,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: weights(n_side), distance
     integer :: nodes(n_side), p, point, beyond
+    logical :: is_curved
 
     associate (points => memory%points, status => memory%slave_status)
       do p = 1, points%n
@@ -141,11 +143,14 @@ contains
           point = site_at(memory, points, p)
           nodes = memory%n_slave + contact%master%segments(:, status%segment(point))
           weights = [1.0_wp - status%xi(point), status%xi(point)]
-          if (memory%has%arcs) weights = weights_along(points%slave_nodes(:, p), &
-            points%slave_weights(:, p), nodes, points%normal(:, p), memory%positions)
         end if
+        is_curved = memory%has%arcs
+        if (is_curved) is_curved = .not. is_flat(memory%arcs%shape(nodes(1)))
+        if (is_curved .and. memory%has%virtual_nodes) weights = weights_along( &
+          points%slave_nodes(:, p), points%slave_weights(:, p), nodes, points%normal(:, p), &
+          memory%positions)
         beyond = 0
-        if (.not. abs(weights(1)*weights(2)) > 0.0_wp) &
+        if (.not. is_curved .and. .not. abs(weights(1)*weights(2)) > 0.0_wp) &
           beyond = node_beyond(contact, memory, nodes, weights(2), points%normal(:, p))
         distance = points%gap(p)
         if (memory%has%arcs) distance = distance_along(points%slave_nodes(:, p), &
@@ -192,13 +197,8 @@ contains
       integer, intent(in) :: nodes(n_side)
       real(wp), intent(in) :: xi
 
-      if (xi < 0.5_wp) then
-        beside = surface%incoming(nodes(1))
-        if (beside > 0) beside = surface%segments(1, beside)
-      else
-        beside = surface%outgoing(nodes(2))
-        if (beside > 0) beside = surface%segments(2, beside)
-      end if
+      beside = merge(surface%incoming(nodes(1)), surface%outgoing(nodes(2)), xi < 0.5_wp)
+      if (beside > 0) beside = surface%segments(merge(1, 2, xi < 0.5_wp), beside)
     end function beside
 
   end function node_beyond

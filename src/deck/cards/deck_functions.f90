@@ -17,12 +17,15 @@ module deck_functions_m
   private
   public :: read_function, check_functions
 
-  !> Largest difference from the function, as part of its largest value, and largest number of
-  !> points.
-  real(wp), parameter :: tolerance = 1.0e-8_wp
+  !> Largest difference from the function as part of its largest value, shortest interval as part of
+  !> the end time (at kinks and jumps), and largest number of points.
+  real(wp), parameter :: tolerance = 1.0e-6_wp, shortest = 1.0e-10_wp
   integer, parameter :: most_points = 1000000
-  !> Intervals to begin with.
-  integer, parameter :: n_first = 64
+  !> Intervals to begin with: no feature longer than two of them is missed. A prime number, so that
+  !> they are in step with no period.
+  integer, parameter :: n_first = 10007
+  !> Positions in an interval at which it is compared with a straight line, besides the middle.
+  real(wp), parameter :: compared(2) = [0.38_wp, 0.71_wp]
 
 contains
 
@@ -127,8 +130,8 @@ contains
         n = n + 1
         merged(1, n) = middle(1, i)
         call value_at(merged(:, n))
-        next_open(n - 1:n) = abs(merged(2, n) - middle(2, i)) > tolerance*max(largest, &
-          abs(merged(2, n))) .and. middle(1, i) - points(1, i) > tolerance*end_time
+        if (middle(1, i) - points(1, i) > shortest*end_time) &
+          next_open(n - 1:n) = bends(points(:, i), points(:, i + 1), merged(2, n))
       end do
       merged(:, n + 1) = points(:, size(points, 2))
       call move_alloc(merged, points)
@@ -137,6 +140,23 @@ contains
     end do
 
   contains
+
+    !> Whether the function between two points is not the straight line.
+    logical function bends(first, last, middle)
+      real(wp), intent(in) :: first(2), last(2)
+      real(wp), intent(in) :: middle !! value in the middle
+      real(wp) :: point(2)
+      integer :: k
+
+      bends = abs(middle - 0.5_wp*(first(2) + last(2))) > tolerance*max(largest, abs(middle))
+      do k = 1, size(compared)
+        if (bends) return
+        point = first + compared(k)*(last - first)
+        call value_at(point)
+        bends = abs(point(2) - (first(2) + compared(k)*(last(2) - first(2)))) &
+          > tolerance*max(largest, abs(point(2)))
+      end do
+    end function bends
 
     !> Evaluate the function at the abscissa of a point.
     subroutine value_at(point)

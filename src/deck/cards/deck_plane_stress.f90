@@ -7,6 +7,7 @@ module deck_plane_stress_m
   use log_m, only : to_text
   use model_m, only : model_t, is_sheet
   use parts_m, only : material_t, condensed_bulk, spall_pressure
+  use deck_cards_m, only : report_field
   use deck_control_m, only : control_cards
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_material
@@ -23,23 +24,17 @@ contains
   subroutine set_plane_stress(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
-    type(card_t) :: cards(6)
-    integer, allocatable :: blocks(:)
     logical, dimension(size(model%parts)) :: is_known, is_thin
     logical :: thins
     integer :: i, m, own
 
-    thins = .false.
-    blocks = blocks_of(deck, 'CONTROL_SHELL')
-    do i = 1, size(blocks)
-      call control_cards(deck, blocks(i), cards)
-      thins = integer_of(cards(1), 'ISTUPD') == 1
-    end do
     is_known = model%parts%section > 0 .and. model%parts%material > 0
     is_thin = .false.
     do i = 1, size(model%parts)
       if (is_known(i)) is_thin(i) = model%sections(model%parts(i)%section)%is_plane_stress
     end do
+    if (.not. any(is_thin)) return
+    call read_shell_control(deck, thins)
     do m = 1, size(model%materials)
       if (.not. any(is_thin .and. model%parts%material == m)) cycle
       if (model%materials(m)%is_rigid) cycle
@@ -55,6 +50,25 @@ contains
       call set_material(deck, own, thins, model%materials(own))
     end do
   end subroutine set_plane_stress
+
+  !> ISTUPD of *CONTROL_SHELL: whether the thickness follows its strain. Its other fields have no
+  !> effect.
+  subroutine read_shell_control(deck, thins)
+    type(deck_t), intent(inout) :: deck
+    logical, intent(out) :: thins
+    type(card_t) :: cards(6)
+    integer, allocatable :: blocks(:)
+
+    thins = .false.
+    blocks = blocks_of(deck, 'CONTROL_SHELL')
+    if (size(blocks) == 0) return
+    call control_cards(deck, blocks(size(blocks)), cards)
+    thins = integer_of(cards(1), 'ISTUPD') == 1
+    if (all(integer_of(cards(1), 'ISTUPD') /= [0, 1])) call report_field(deck, cards(1), 'ISTUPD', &
+      'is not 0 (constant thickness) or 1 (the thickness of plane stress follows its strain)')
+    if (cards(3)%line > 0 .and. integer_of(cards(3), 'PSTUPD') /= 0) call report_field(deck, &
+      cards(3), 'PSTUPD', 'chooses parts; ISTUPD holds for all parts in plane stress here')
+  end subroutine read_shell_control
 
   !> Put the law of a material under the condition sigma_zz = 0, or report that it has none.
   subroutine set_material(deck, m, thins, material)

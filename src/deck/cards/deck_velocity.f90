@@ -85,6 +85,7 @@ contains
     call next_card(deck, cursor, 2, cards(2))
     if (integer_of(cards(1), 'NSIDEX') /= 0) call next_card(deck, cursor, 3, cards(3))
     call check_rest(deck, cursor)
+    call check_rigid(deck, cards(1))
     if (any(cards(1)%bad) .or. any(cards(2)%bad)) return
     if (first_line == 0) first_line = cards(1)%line
     is_chosen = integer_of(cards(1), 'NSID') == 0
@@ -114,6 +115,17 @@ contains
     end do
   end subroutine read_velocity
 
+  !> Refuse IRIGID beside *PART_INERTIA, whose velocity it would replace. Other rigid bodies have the
+  !> velocities of their nodes.
+  subroutine check_rigid(deck, card)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+
+    if (integer_of(card, 'IRIGID') /= 0 .and. size(blocks_of(deck, 'PART_INERTIA')) > 0) &
+      call report_field(deck, card, 'IRIGID', 'asks for a velocity in place of that of ' &
+      //'*PART_INERTIA; give it there')
+  end subroutine check_rigid
+
   !> *INITIAL_VELOCITY_GENERATION: translation and rotation about an axis along z.
   subroutine read_generation(deck, cursor, model, first_line, velocity)
     type(deck_t), intent(inout) :: deck
@@ -136,6 +148,7 @@ contains
       if (abs(real_of(axis, 'NX')) > 0.0_wp) call report_field(deck, axis, 'NX', turned)
       if (abs(real_of(axis, 'NY')) > 0.0_wp) call report_field(deck, axis, 'NY', turned)
     end if
+    call check_rigid(deck, axis)
     if (any(card%bad) .or. any(axis%bad)) return
     if (first_line == 0) first_line = card%line
     if (model%is_axisymmetric .and. abs(spin) > 0.0_wp) call report_field(deck, card, 'OMEGA', &

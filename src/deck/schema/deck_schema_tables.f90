@@ -51,9 +51,9 @@ module deck_schema_tables_m
     'CONTROL_HOURGLASS o', &
     ' IHQ:i QH:f>=0<=10', &
     'CONTROL_SHELL o', &
-    ' WRPANG:fs=20 ESORT:is IRNXX:is=-1 ISTUPD:i|0|1 THEORY:is=2 BWC:is=2 MITER:is=1 PROJ:is', &
+    ' WRPANG:fs=20 ESORT:is IRNXX:is=-1 ISTUPD:i THEORY:is=2 BWC:is=2 MITER:is=1 PROJ:is', &
     ' ROTASCL:fs=1 INTGRD:is LAMSHT:is CSTYP6:is=1 THSHEL:is', &
-    ' PSTUPD:ir SIDT4TU:is CNTCO:is ITSFLG:is IRQUAD:is=3 WMODE:fs STRETCH:fs ICRQ:is', &
+    ' PSTUPD:i SIDT4TU:is CNTCO:is ITSFLG:is IRQUAD:is=3 WMODE:fs STRETCH:fs ICRQ:is', &
     ' NFAIL1:is NFAIL4:is PSNFAIL:is KEEPCS:is DELFR:is DRCPSID:is DRCPRM:fs=1 INTPERR:is', &
     ' DRCMTH:is LISPSID:is NLOCDT:is', &
     'CONTROL_BULK_VISCOSITY o', &
@@ -249,14 +249,14 @@ module deck_schema_tables_m
     'BOUNDARY_PRESCRIBED_MOTION_RIGID tr', &
     ' PID:i>=1 DOF:i|1|2|7 VAD:i|0|1|2 LCID:i>=1 SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
     'INITIAL_VELOCITY o', &
-    ' NSID:i>=0 NSIDEX:i>=0 BOXID:i>=0 IRIGID:is ICID:ir', &
+    ' NSID:i>=0 NSIDEX:i>=0 BOXID:i>=0 IRIGID:i ICID:ir', &
     ' VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw', &
     ' VXE:f VYE:f VZE:fw VXRE:fw VYRE:fw VZRE:fw', &
     'INITIAL_VELOCITY_NODE r', &
     ' NID:i>=1 VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw ICID:ir', &
     'INITIAL_VELOCITY_GENERATION', &
     ' ID:i>=0 STYP:i~1|1|2|3 OMEGA:f>=-1e30<=1e30 VX:f VY:f VZ:fw IVATN:is ICID:ir', &
-    ' XC:f YC:f ZC:fs NX:f NY:f NZ:f PHASE:ir IRIGID:is', &
+    ' XC:f YC:f ZC:fs NX:f NY:f NZ:f PHASE:ir IRIGID:i', &
     'INITIAL_VELOCITY_RIGID_BODY r', &
     ' PID:i>=1 VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:f ICID:ir', &
     'LOAD_NODE_POINT r', &
