@@ -115,8 +115,8 @@ contains
     end do
   end subroutine read_velocity
 
-  !> Refuse IRIGID beside *PART_INERTIA, whose velocity it would replace. Other rigid bodies have the
-  !> velocities of their nodes.
+  !> Refuse IRIGID beside *PART_INERTIA, whose velocity it would replace. Other rigid bodies have
+  !> the velocities of their nodes.
   subroutine check_rigid(deck, card)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
