@@ -333,7 +333,7 @@ contains
     call eliminate(stress(4), ratio)
     do i = 1, 3
       call eliminate(stress(4), stress(i))
-      if (material%thins) stress(i) = stress(i)*ratio
+      if (material%follows_strain) stress(i) = stress(i)*ratio
     end do
     stress(4) = constant(0.0_wp)
   end subroutine find_sheet_stress

@@ -355,7 +355,7 @@ contains
 
     if (material%viscosity > 0.0_wp) then
       ! Damping of the shortest waves by 4/3 of the viscosity: L/(Q + sqrt(Q^2 + c^2)) with
-      ! Q = 4/3 viscosity/(rho L); the largest volume thins the fluid most.
+      ! Q = 4/3 viscosity/(rho L); the largest volume follows_strain the fluid most.
       damping = 4.0_wp*material%viscosity*(1.0_wp + maxval(stretch)) &
         /(3.0_wp*material%density*now%sound_speed**2*step)
       step = step/(damping + sqrt(damping**2 + 1.0_wp))

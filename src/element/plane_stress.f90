@@ -21,16 +21,17 @@ module plane_stress_m
   !> point follows.
   integer, parameter :: n_law_value = 6
 
-  integer, parameter :: most_rounds = 60
+  integer, parameter :: most_iterations = 60
   !> Largest sigma_zz, as a share of the stresses it is the difference of.
   real(wp), parameter :: tolerance = 1.0e-12_wp
-  !> Bounds of the strain increment of the thickness, and of its change in a round.
+  !> Bounds of the strain increment of the thickness, and of its change in an iteration.
   real(wp), parameter :: most_strain = 1.9_wp, most_change = 0.5_wp
 
   !> State of the search for the strain increments.
   type :: search_t
-    real(wp), dimension(chunk_size) :: strain, last_strain !! estimates, of this round and the last
-    real(wp), dimension(chunk_size) :: rest                !! sigma_zz in the last round
+    real(wp), dimension(chunk_size) :: strain, last_strain !! estimates, of this iteration and the
+                                                           !! last
+    real(wp), dimension(chunk_size) :: residual            !! sigma_zz in the last iteration
     real(wp), dimension(chunk_size) :: slope               !! its derivative
     real(wp), dimension(chunk_size) :: dilation            !! ln(A/A0)
     logical, dimension(chunk_size) :: is_open
@@ -59,7 +60,7 @@ contains
     type(stress_chunk_t) :: start
     type(search_t) :: search
     real(wp) :: before(chunk_size*history_size(material)), old(chunk_size), stiffness
-    integer :: first, last, place, round
+    integer :: first, last, place, iteration
 
     place = thinning_start(elements, i_chunk, k)
     first = elements%history_start(i_chunk) + (k - 1)*size(before)
@@ -76,7 +77,7 @@ contains
     search%slope = stiffness
     search%dilation = log_ratio(point%stretch)
     search%is_open = .true.
-    do round = 1, most_rounds
+    do iteration = 1, most_iterations
       call set_strain(search%strain, point%stretch, old, start, stress)
       if (size(before) > 0) then
         elements%history(first:last) = before
@@ -84,11 +85,11 @@ contains
       else
         call update_stress(material, stress)
       end if
-      call update_strain(material, round, stress, search)
+      call update_strain(material, iteration, stress, search)
       if (.not. any(search%is_open)) exit
     end do
     elements%eos_state(place:place + chunk_size - 1) = stress%hzz
-    call finish_work(material%thins, old, start, stress)
+    call finish_work(material%follows_strain, old, start, stress)
   end subroutine update_sheet
 
   !> Set what a law gets of an estimate of the strain increment of the thickness.
@@ -118,12 +119,12 @@ contains
   end subroutine set_strain
 
   !> Find sigma_zz and the next estimate; points whose law has failed carry nothing.
-  pure subroutine update_strain(material, round, stress, search)
+  pure subroutine update_strain(material, iteration, stress, search)
     type(material_t), intent(in) :: material
-    integer, intent(in) :: round
+    integer, intent(in) :: iteration
     type(stress_chunk_t), intent(in) :: stress
     type(search_t), intent(inout) :: search
-    real(wp) :: stiffness, growth, mean, rest, change
+    real(wp) :: stiffness, growth, mean, residual, change
     logical :: breaks
     integer :: i
 
@@ -134,28 +135,28 @@ contains
       growth = log_ratio(stress%hzz(i))
       mean = material%bulk*(search%dilation(i) + growth)
       if (allocated(material%rubber)) mean = stress%mean(i)
-      rest = mean - (stress%sxx(i) + stress%syy(i))
-      if (round > 1) then
+      residual = mean - (stress%sxx(i) + stress%syy(i))
+      if (iteration > 1) then
         change = search%strain(i) - search%last_strain(i)
         if (abs(change) > 0.0_wp) search%slope(i) = max(0.1_wp*stiffness, &
-          (rest - search%rest(i))/change)
+          (residual - search%residual(i))/change)
       end if
-      search%is_open(i) = abs(rest) > tolerance*(material%bulk*(abs(search%dilation(i)) &
+      search%is_open(i) = abs(residual) > tolerance*(material%bulk*(abs(search%dilation(i)) &
         + abs(growth)) + abs(stress%sxx(i)) + abs(stress%syy(i)))
       if (breaks) search%is_open(i) = search%is_open(i) .and. abs(stress%sxx(i)) &
         + abs(stress%syy(i)) + abs(stress%sxy(i)) > 0.0_wp
       if (.not. search%is_open(i)) cycle
       search%last_strain(i) = search%strain(i)
-      search%rest(i) = rest
-      change = max(-most_change, min(most_change, -rest/search%slope(i)))
+      search%residual(i) = residual
+      change = max(-most_change, min(most_change, -residual/search%slope(i)))
       search%strain(i) = max(-most_strain, min(most_strain, search%strain(i) + change))
     end do
   end subroutine update_strain
 
   !> Mean stress, which is (sigma_xx + sigma_yy)/3, and the work of the stress in the plane, per
   !> area and thickness of time zero.
-  pure subroutine finish_work(thins, old, start, stress)
-    logical, intent(in) :: thins
+  pure subroutine finish_work(follows_strain, old, start, stress)
+    logical, intent(in) :: follows_strain
     real(wp), intent(in) :: old(chunk_size)
     type(stress_chunk_t), intent(in) :: start
     type(stress_chunk_t), intent(inout) :: stress
@@ -168,19 +169,19 @@ contains
         ((start%sxx(i) + stress%sxx(i)) + (start%mean(i) + stress%mean(i)))*start%dxx(i) &
         + ((start%syy(i) + stress%syy(i)) + (start%mean(i) + stress%mean(i)))*start%dyy(i))
     end do
-    if (thins) stress%work = stress%work*(1.0_wp + 0.5_wp*(old + stress%hzz))
+    if (follows_strain) stress%work = stress%work*(1.0_wp + 0.5_wp*(old + stress%hzz))
   end subroutine finish_work
 
   !> The stress of the plane in place of its deviator, times t/t0 where forces follow the thickness.
-  pure subroutine form_membrane_stress(thins, stress)
-    logical, intent(in) :: thins
+  pure subroutine form_membrane_stress(follows_strain, stress)
+    logical, intent(in) :: follows_strain
     type(stress_chunk_t), intent(inout) :: stress
     real(wp) :: factor
     integer :: i
 
     !$omp simd private(factor)
     do i = 1, chunk_size
-      factor = merge(1.0_wp + stress%hzz(i), 1.0_wp, thins)
+      factor = merge(1.0_wp + stress%hzz(i), 1.0_wp, follows_strain)
       stress%sxx(i) = factor*(stress%sxx(i) + stress%mean(i))
       stress%syy(i) = factor*(stress%syy(i) + stress%mean(i))
       stress%sxy(i) = factor*stress%sxy(i)

@@ -106,7 +106,7 @@ contains
       chunk%heat = stress%work*chunk%mid_area
       if (gives_pressure(material)) call add_law_values(material, 1.0_wp/inverse_start(chunk), &
         stress, chunk)
-      if (material%is_plane_stress) call form_membrane_stress(material%thins, stress)
+      if (material%is_plane_stress) call form_membrane_stress(material%follows_strain, stress)
       call form_shared_pressure(i_chunk, material, hourglass, inverse_start(chunk), elements, &
         chunk, now)
     else
@@ -259,7 +259,7 @@ contains
     sums%deviator(:, 1) = sums%deviator(:, 1) + point%volume*stress%sxx
     sums%deviator(:, 2) = sums%deviator(:, 2) + point%volume*stress%syy
     sums%deviator(:, 3) = sums%deviator(:, 3) + point%volume*stress%sxy
-    if (material%is_plane_stress) call form_membrane_stress(material%thins, stress)
+    if (material%is_plane_stress) call form_membrane_stress(material%follows_strain, stress)
     if (has_mean_dilatation(material)) then
       point%pressure = chunk%pressure
     else

@@ -129,7 +129,7 @@ module parts_m
     logical :: is_fixed(3) = .false. !! rigid body: fixed x, y and rotation about z
     logical :: is_plane_stress = .false. !! its law holds with sigma_zz = 0 (`plane_stress`); `eos`
                                          !! is allocated, by law
-    logical :: thins = .false. !! plane stress: forces follow the thickness (ISTUPD)
+    logical :: follows_strain = .false. !! plane stress: forces follow the thickness (ISTUPD)
   contains
     procedure :: visit => visit_material
   end type material_t
@@ -272,7 +272,7 @@ contains
     call visitor%visit('is_rigid', self%is_rigid)
     call visitor%plain(c_loc(self%is_fixed), storage_size(self%is_fixed), size(self%is_fixed))
     call visitor%visit('is_plane_stress', self%is_plane_stress)
-    call visitor%visit('thins', self%thins)
+    call visitor%visit('follows_strain', self%follows_strain)
   end subroutine visit_material
 
   !> Visit the components of a part.

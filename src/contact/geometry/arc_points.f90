@@ -62,7 +62,7 @@ contains
     type(arc_block_t), intent(inout) :: block
     real(wp), dimension(n_block, 2) :: t, d, own !! secants, from their first nodes to the points on
                                                  !! their own secants, these secants, m
-    real(wp), dimension(n_block) :: length, across, above, foot, way, height, sine, cosine
+    real(wp), dimension(n_block) :: length, across, above, xi, shift, height, sine, cosine
     real(wp) :: unit(2), off(2), gap, fall
     integer :: k
 
@@ -78,23 +78,23 @@ contains
         off(2) = -height(k)*own(k, 1)
         across(k) = d(k, 1)*unit(2) - d(k, 2)*unit(1)
         above(k) = across(k) + (off(1)*unit(2) - off(2)*unit(1))
-        foot(k) = ((d(k, 1) + off(1))*unit(1) + (d(k, 2) + off(2))*unit(2))/length(k)
+        xi(k) = ((d(k, 1) + off(1))*unit(1) + (d(k, 2) + off(2))*unit(2))/length(k)
       end do
-      call find_heights(n, bend, skew, foot, height, sine, cosine)
+      call find_heights(n, bend, skew, xi, height, sine, cosine)
       !$omp simd private(gap, fall)
       do k = 1, n
         gap = (above(k)/length(k) - height(k))*cosine(k)
-        fall = bend(k) + 6.0_wp*skew(k)*(1.0_wp - 2.0_wp*foot(k))
-        fall = merge(0.0_wp, fall, abs(foot(k) - 0.5_wp) > 0.5_wp)
-        way(k) = gap*sine(k)/max(0.5_wp, 1.0_wp + gap*fall)
-        foot(k) = foot(k) + way(k)
+        fall = bend(k) + 6.0_wp*skew(k)*(1.0_wp - 2.0_wp*xi(k))
+        fall = merge(0.0_wp, fall, abs(xi(k) - 0.5_wp) > 0.5_wp)
+        shift(k) = gap*sine(k)/max(0.5_wp, 1.0_wp + gap*fall)
+        xi(k) = xi(k) + shift(k)
       end do
-      call find_heights(n, bend, skew, foot, height, sine, cosine)
+      call find_heights(n, bend, skew, xi, height, sine, cosine)
       !$omp simd private(unit)
       do k = 1, n
         unit(1) = t(k, 1)/length(k)
         unit(2) = t(k, 2)/length(k)
-        block%gap(k) = (above(k) - height(k)*length(k))*cosine(k) + way(k)*length(k)*sine(k)
+        block%gap(k) = (above(k) - height(k)*length(k))*cosine(k) + shift(k)*length(k)*sine(k)
         block%offset(k) = block%gap(k) - across(k)
         block%normal(k, 1) = unit(2)*cosine(k) - unit(1)*sine(k)
         block%normal(k, 2) = -unit(1)*cosine(k) - unit(2)*sine(k)
@@ -108,16 +108,16 @@ contains
     integer, intent(in) :: n, nodes(4, n)
     real(wp), intent(in) :: own_xi(n), positions(4, *)
     real(wp), intent(inout), dimension(n_block, 2) :: t, d, own
-    real(wp), dimension(4) :: along, way, secant
+    real(wp), dimension(4) :: along, difference, secant
     integer :: k
 
     !GCC$ NOVECTOR
     do k = 1, n
       along = positions(:, nodes(2, k)) - positions(:, nodes(1, k))
-      way = (positions(:, nodes(1, k)) - positions(:, nodes(3, k))) + own_xi(k)*along
+      difference = (positions(:, nodes(1, k)) - positions(:, nodes(3, k))) + own_xi(k)*along
       secant = positions(:, nodes(4, k)) - positions(:, nodes(3, k))
       own(k, :) = along(1:2) + along(3:4)
-      d(k, :) = way(1:2) + way(3:4)
+      d(k, :) = difference(1:2) + difference(3:4)
       t(k, :) = secant(1:2) + secant(3:4)
     end do
   end subroutine gather_block
@@ -300,7 +300,7 @@ contains
     real(wp), intent(in), contiguous :: positions(:, :)
     type(arc_block_t), intent(in) :: block
     type(contact_points_t), intent(inout) :: points
-    real(wp), dimension(4) :: own, way, master
+    real(wp), dimension(4) :: own, difference, master
     real(wp) :: normal(2), d(2), t(2), lever, along, area
     integer :: k, p, first, last
 
@@ -316,13 +316,13 @@ contains
       do p = first, last
         associate (a => points%master_nodes(1, p), b => points%master_nodes(2, p))
           master = positions(:, b) - positions(:, a)
-          way = own - positions(:, a) - points%master_weights(2, p)*master
+          difference = own - positions(:, a) - points%master_weights(2, p)*master
         end associate
         t = master(1:2) + master(3:4)
-        d = way(1:2) + way(3:4)
+        d = difference(1:2) + difference(3:4)
         points%gap(p) = block%gap(k)
         points%normal(:, p) = normal
-        ! Until they are known their ways wait here.
+        ! Kept here until the lever is known: how far xi changes for a unit of it.
         points%master_weights(1, p) = 1.0_wp/sqrt(t(1)**2 + t(2)**2)
         area = points%area(p)
         lever = lever + area*(normal(1)*d(2) - normal(2)*d(1))
@@ -337,8 +337,7 @@ contains
     end do
   end subroutine store_virtual_nodes
 
-  !> What the gap of a node to the arc over a segment of the other surface has more than that to the
-  !> segment, m.
+  !> Gap of a node to the arc over a segment of the other surface less that to the segment, m.
   pure function offset_by_arc(memory, node, other) result(offset)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: node, other(n_side) !! local numbers

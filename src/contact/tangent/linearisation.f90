@@ -187,7 +187,8 @@ contains
     type(dual_t), intent(in) :: d(2)    !! from its first node to the point, m
     type(dual_t), intent(in) :: t(2)    !! the segment, m
     type(linearised_projection_t), intent(inout) :: projection
-    type(dual_t) :: own(2), off(2), length, unit(2), normal(2), across, above, xi, way, sine, cosine
+    type(dual_t) :: own(2), off(2), length, unit(2), normal(2), across, above, xi, shift, sine
+    type(dual_t) :: cosine
     type(dual_t) :: bend, skew, height
     type(arc_shape_t) :: own_shape
 
@@ -212,10 +213,11 @@ contains
     above = across + off(1)*normal(1) + off(2)*normal(2)
     xi = ((d(1) + off(1))*unit(1) + (d(2) + off(2))*unit(2))/length
     call find_height(bend, skew, xi, height, sine)
-    way = way_to_projection(bend, skew, xi, (above/length - height)*sqrt(1.0_wp - sine*sine), sine)
-    call find_height(bend, skew, xi + way, height, sine)
+    shift = shift_to_projection(bend, skew, xi, (above/length - height)*sqrt(1.0_wp - sine*sine), &
+      sine)
+    call find_height(bend, skew, xi + shift, height, sine)
     cosine = sqrt(1.0_wp - sine*sine)
-    projection%gap = (above - height*length)*cosine + way*length*sine
+    projection%gap = (above - height*length)*cosine + shift*length*sine
     projection%normal = [normal(1)*cosine - unit(1)*sine, normal(2)*cosine - unit(2)*sine]
     point%shift = across*sine/cosine
     projection%xi = (d(1)*unit(1) + d(2)*unit(2) + point%shift)/length
@@ -293,16 +295,16 @@ contains
 
   !> Newton step from above a place on an arc to the place whose normal goes through the point
   !> (`arcs_m`).
-  pure function way_to_projection(bend, skew, xi, gap, sine) result(way)
+  pure function shift_to_projection(bend, skew, xi, gap, sine) result(shift)
     type(dual_t), intent(in) :: bend, skew, xi, gap, sine !! gap as a part of the secant
-    type(dual_t) :: way, fall
+    type(dual_t) :: shift, fall
 
     fall = bend + 6.0_wp*skew*(1.0_wp - 2.0_wp*xi)
     if (abs(xi%value - 0.5_wp) > 0.5_wp) fall = constant(0.0_wp)
     fall = gap*fall + 1.0_wp
     if (fall%value < 0.5_wp) fall = constant(0.5_wp)
-    way = gap*sine/fall
-  end function way_to_projection
+    shift = gap*sine/fall
+  end function shift_to_projection
 
   !> Slip of a point in the step over the segment in slots 3, 4, m: L d(xi). Where slot 4 is not
   !> used the segment that has the normal is the slave's.

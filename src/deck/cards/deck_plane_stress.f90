@@ -25,7 +25,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
     logical, dimension(size(model%parts)) :: is_known, is_thin
-    logical :: thins
+    logical :: follows_strain
     integer :: i, m, own
 
     is_known = model%parts%section > 0 .and. model%parts%material > 0
@@ -34,7 +34,7 @@ contains
       if (is_known(i)) is_thin(i) = model%sections(model%parts(i)%section)%is_plane_stress
     end do
     if (.not. any(is_thin)) return
-    call read_shell_control(deck, thins)
+    call read_shell_control(deck, follows_strain)
     do m = 1, size(model%materials)
       if (.not. any(is_thin .and. model%parts%material == m)) cycle
       if (model%materials(m)%is_rigid) cycle
@@ -47,23 +47,23 @@ contains
         own = size(model%materials)
         where (is_thin .and. model%parts%material == m) model%parts%material = own
       end if
-      call set_material(deck, own, thins, model%materials(own))
+      call set_material(deck, own, follows_strain, model%materials(own))
     end do
   end subroutine set_plane_stress
 
   !> ISTUPD of *CONTROL_SHELL: whether the thickness follows its strain. Its other fields have no
   !> effect.
-  subroutine read_shell_control(deck, thins)
+  subroutine read_shell_control(deck, follows_strain)
     type(deck_t), intent(inout) :: deck
-    logical, intent(out) :: thins
+    logical, intent(out) :: follows_strain
     type(card_t) :: cards(6)
     integer, allocatable :: blocks(:)
 
-    thins = .false.
+    follows_strain = .false.
     blocks = blocks_of(deck, 'CONTROL_SHELL')
     if (size(blocks) == 0) return
     call control_cards(deck, blocks(size(blocks)), cards)
-    thins = integer_of(cards(1), 'ISTUPD') == 1
+    follows_strain = integer_of(cards(1), 'ISTUPD') == 1
     if (all(integer_of(cards(1), 'ISTUPD') /= [0, 1])) call report_field(deck, cards(1), 'ISTUPD', &
       'is not 0 (constant thickness) or 1 (the thickness of plane stress follows its strain)')
     if (cards(3)%line > 0 .and. integer_of(cards(3), 'PSTUPD') /= 0) call report_field(deck, &
@@ -71,10 +71,10 @@ contains
   end subroutine read_shell_control
 
   !> Put the law of a material under the condition sigma_zz = 0, or report that it has none.
-  subroutine set_material(deck, m, thins, material)
+  subroutine set_material(deck, m, follows_strain, material)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: m
-    logical, intent(in) :: thins
+    logical, intent(in) :: follows_strain
     type(material_t), intent(inout) :: material
     character(:), allocatable :: reason
 
@@ -98,7 +98,7 @@ contains
       //to_text(material%id)//' has '//reason//', which plane stress (ELFORM 12) does not have')
     if (len(reason) > 0 .or. .not. (material%bulk > 0.0_wp .and. material%density > 0.0_wp)) return
     material%is_plane_stress = .true.
-    material%thins = thins
+    material%follows_strain = follows_strain
     material%eos = eos_t(kind=eos_by_law, stiffness=material%bulk)
     material%sound_speed = sqrt((condensed_bulk(material%bulk, material%shear) &
       + 4.0_wp*material%shear/3.0_wp)/material%density)

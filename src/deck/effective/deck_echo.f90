@@ -49,7 +49,7 @@ contains
         if (model%sections(part%section)%is_plane_stress) text = text//', plane stress, ' &
           //'thickness '//to_text(model%sections(part%section)%thickness) &
           //trim(merge(' (follows its strain)', repeat(' ', 21), &
-          model%materials(part%material)%thins))
+          model%materials(part%material)%follows_strain))
         call write_log(log, text)
       end associate
     end do
