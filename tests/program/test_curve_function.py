@@ -12,7 +12,6 @@ DAMPED = ("0.01*exp(-rate*TIME)*", "  sin(2*pi*4*TIME)")
 #: short beside the end time, in step with halves of it, or with an inflection in the middle of one
 SHAPES = {
     "pulse": ("IF(TIME-4e-4,0.001*SIN(PI*TIME/4e-4),0,0)", lambda t: np.where(t < 4e-4, 1e-3 * np.sin(np.pi * t / 4e-4), 0.0)),
-    "periods": ("0.001*(COS(2*PI*640*TIME)-1)", lambda t: 1e-3 * (np.cos(1280.0 * np.pi * t) - 1.0)),
     "zeros": ("0.001*SIN(2*PI*320*TIME)", lambda t: 1e-3 * np.sin(640.0 * np.pi * t)),
     "step": ("STEP(TIME,0,0,3.125e-3,0.001)",
              lambda t: 1e-3 * np.clip(t / 3.125e-3, 0.0, 1.0)**2 * (3.0 - 2.0 * np.clip(t / 3.125e-3, 0.0, 1.0)))}
@@ -48,7 +47,7 @@ def test_nodes_follow_a_function(slideline, tmp_path, implicit):
 @pytest.mark.parametrize("name", SHAPES)
 def test_what_is_short_or_regular_is_seen(slideline, tmp_path, name):
     text, exact = SHAPES[name]
-    done = slideline("d=out", deck=moved(2, expression=(text,), step=2.0e-5, interval=1.0e-4).text())
+    done = slideline("d=out", deck=moved(2, expression=(text,), step=1.0e-4, interval=1.0e-4).text())
     assert done.returncode == 0, done.stderr
     time, way = (numbers(tmp_path / "out/job.nodout.csv", column) for column in ("time", "ux"))
     np.testing.assert_allclose(way, exact(time), rtol=0, atol=2.0e-9)
