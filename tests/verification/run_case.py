@@ -220,6 +220,19 @@ class Run:
         return [name for name, entry in self.quantities.items()
                 if name not in self.used and (self.is_full or not entry.get("full"))]
 
+    def goes_on(self, deck, cycle, whole, *tables):
+        """Check that a run of the deck from its restart file of a cycle ends as the whole run: the same bits in tables."""
+        text = deck if isinstance(deck, str) else deck.text()
+        dumped = self.program(text.replace("*END", f"*DATABASE_BINARY_D3DUMP\n{cycle}\n*END"), name=f"{whole.folder.name}_dumped")
+        folder = self.work / f"{whole.folder.name}_goes_on"
+        folder.mkdir(exist_ok=True)
+        done = subprocess.run([str(self.program_path), f"r={next(dumped.folder.glob('*.dump01.h5'))}", f"d={folder}"],
+                              capture_output=True, text=True, timeout=600)
+        self.true("the run goes on", done.returncode == 0)
+        for table in tables:
+            self.true(f"{table} is the same to the bit",
+                      next(folder.glob(f"*.{table}.csv")).read_bytes() == whole.csv_path(table).read_bytes())
+
     def check(self, quantity, found, expected, scale=None, tol=None):
         """Compare and record. Arrays: largest difference, relative to the largest expected.
 

@@ -10,7 +10,7 @@ module arc_points_m
   use projection_block_m, only : n_block
   implicit none
   private
-  public :: curve_points, offset_by_arc
+  public :: curve_points, offset_by_arc, last_of_virtual_node
 
   !> Points over segments of the other surface, one of which at least is curved, many at a time.
   !> Without default values, which would be written before each use.
@@ -233,7 +233,8 @@ contains
     nodes = memory%n_slave + contact%master%segments(:, memory%slave_status%segment(virtual_node))
   end function nodes_below
 
-  !> The last of the sub-segments of a virtual node, which follow each other.
+  !> The last of the sub-segments of a virtual node, which follow each other; other points stand
+  !> alone.
   pure function last_of_virtual_node(points, first) result(last)
     type(contact_points_t), intent(in) :: points
     integer, intent(in) :: first
@@ -242,6 +243,7 @@ contains
     last = first
     do while (last < points%n)
       if (points%slave_nodes(1, last + 1) /= points%slave_nodes(1, first) &
+        .or. points%slave_nodes(2, last + 1) /= points%slave_nodes(2, first) &
         .or. abs(points%slave_weights(2, last + 1) - points%slave_weights(2, first)) > 0.0_wp) exit
       last = last + 1
     end do

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Damping of points in contact (doc/theory/contact.md, section 6).
 module damping_m
+  use arc_points_m, only : last_of_virtual_node
   use contact_state_m, only : contact_points_t, n_side
   use kinds_m, only : wp
   implicit none
@@ -32,7 +33,8 @@ contains
     points%damping(:points%n) = 0.0_wp
     p = 1
     do while (p <= points%n)
-      last = last_of_spring(points, p)
+      ! Sub-segments damped one by one would brake a rotation of all.
+      last = last_of_virtual_node(points, p)
       if (points%pressure(p)*sum(points%area(p:last)) > 0.0_wp) then
         rate = opening_rate(points, p, last, nodes, motion)
         damped = max(0.0_wp, points%pressure(p) &
@@ -43,22 +45,6 @@ contains
       p = last + 1
     end do
   end subroutine damp_points
-
-  !> The last point that the spring of a point has: the sub-segments of a virtual node follow each
-  !> other. Damped one by one they would brake a rotation of all.
-  pure function last_of_spring(points, first) result(last)
-    type(contact_points_t), intent(in) :: points
-    integer, intent(in) :: first
-    integer :: last
-
-    last = first
-    do while (last < points%n)
-      if (points%slave_nodes(1, last + 1) /= points%slave_nodes(1, first) &
-        .or. points%slave_nodes(2, last + 1) /= points%slave_nodes(2, first) &
-        .or. abs(points%slave_weights(2, last + 1) - points%slave_weights(2, first)) > 0.0_wp) exit
-      last = last + 1
-    end do
-  end function last_of_spring
 
   !> Opening velocity of a spring, the mean of its points by area, m/s.
   pure function opening_rate(points, first, last, nodes, motion) result(rate)

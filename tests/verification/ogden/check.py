@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Ogden rubber: principal stresses of stretched, turned elements, small strain, energy of a free vibration."""
-import subprocess
 
 import numpy as np
 
@@ -82,12 +81,4 @@ def check_vibration(run):
 def check_restart(run):
     deck = vibration(0.05)
     whole = run.program(deck, name="whole")
-    deck.add("*DATABASE_BINARY_D3DUMP", (50,))
-    dumped = run.program(deck, name="dumped")
-    folder = run.work / "goes_on"
-    folder.mkdir()
-    done = subprocess.run([str(run.program_path), f"r={dumped.folder / 'dumped.dump01.h5'}", f"d={folder}"],
-                          capture_output=True, text=True, timeout=600)
-    run.true("the run goes on", done.returncode == 0)
-    run.true("glstat is the same to the bit",
-             (folder / "dumped.glstat.csv").read_bytes() == whole.csv_path("glstat").read_bytes())
+    run.goes_on(deck, 50, whole, "glstat")

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Bars and blocks against rigid walls."""
-import subprocess
 
 import numpy as np
 
@@ -171,16 +170,7 @@ def check_restart(run):
     deck, dt, _ = bar(end=0.8 * CONTACT, n=50)
     cycles = int(round(0.3 * CONTACT / dt))
     whole = run.program(deck, name="whole")
-    deck.add("*DATABASE_BINARY_D3DUMP", (cycles,))
-    dumped = run.program(deck, name="dumped")
-    folder = run.work / "goes_on"
-    folder.mkdir()
-    finished = subprocess.run([str(run.program_path), f"r={dumped.folder / 'dumped.dump01.h5'}", f"d={folder}"],
-                              capture_output=True, text=True, timeout=600)
-    run.true("the run goes on", finished.returncode == 0)
-    for name in ("rwforc", "glstat"):
-        run.true(f"{name} is the same to the bit",
-                 (folder / f"dumped.{name}.csv").read_bytes() == whole.csv_path(name).read_bytes())
+    run.goes_on(deck, cycles, whole, "rwforc", "glstat")
 
 
 def check_moving(run):
@@ -200,14 +190,7 @@ def check_moving(run):
     along = momentum["momentum_x"] * np.cos(0.4) + momentum["momentum_y"] * np.sin(0.4)
     run.check("momentum goes from the wall to the bar", along[-1], force["impulse"][-1])
     run.check("energy ratio with a moving wall", result.table("glstat")["energy_ratio"][1:], np.ones(len(along) - 1))
-    dumped = run.program(text.replace("*END", f"*DATABASE_BINARY_D3DUMP\n{int(0.4 * end / dt)}\n*END"), name="moving_dumped")
-    folder = run.work / "moving_goes_on"
-    folder.mkdir()
-    finished = subprocess.run([str(run.program_path), f"r={dumped.folder / 'moving_dumped.dump01.h5'}", f"d={folder}"],
-                              capture_output=True, text=True, timeout=600)
-    run.true("the run with a moving wall goes on", finished.returncode == 0)
-    run.true("rwforc of a moving wall is the same to the bit",
-             (folder / "moving_dumped.rwforc.csv").read_bytes() == result.csv_path("rwforc").read_bytes())
+    run.goes_on(text, int(0.4 * end / dt), result, "rwforc")
 
 
 def check(run):
