@@ -43,13 +43,13 @@ SHORTER = {
     "tar -xzf": "mkdir -p {package}/bin && ln -s $PWD/build/release/slideline {package}/bin && "
                 "mkdir -p {package}/share/slideline && cp -r input {package}/share/slideline/examples && "
                 "tar -czf {package}.tar.gz {package} && rm -r {package} && {command}",
-    "slideline-0.2.0/bin/slideline": "{command} endtim=2e-5 && rm -r {package} {package}.tar.gz",
+    "slideline-0.4.0/bin/slideline": "{command} endtim=2e-5 && rm -r {package} {package}.tar.gz",
     "build/venv/bin/python results/hertz_mesh.py": "build/venv/bin/python {here}/coarse_hertz.py results/hertz.msh",  # gmsh
     "SLIDELINE=build/release/slideline build/venv/bin/python tests/lab/fuzz/": "test -f $(echo '{command}' | cut -d' ' -f3)",
     "SLIDELINE_FUZZ=600 tools/test.sh": "test -x tools/test.sh",
     "build/venv/bin/python tests/lab/fuzz/": "test -f $(echo '{command}' | cut -d' ' -f2)",
 }
-PACKAGE = "slideline-0.2.0"
+PACKAGE = "slideline-0.4.0"
 #: what a page has the reader install first, if it is not there: its block is compiled only
 EXTRAS = {"pyvista", "lasso"}
 #: what may lie at the top of the tree after the commands

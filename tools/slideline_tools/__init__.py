@@ -22,7 +22,7 @@ if typing.TYPE_CHECKING:
     from slideline_tools.program import Outcome, Sweep, run, sweep
     from slideline_tools.results import Results
 
-__version__ = "0.2.0"
+__version__ = "0.4.0"
 __all__ = ["Outcome", "Sweep", "UserError", "plot", "read", "run", "sweep"]
 
 #: public names whose modules are read when they are asked for: numpy and h5py are slow to import

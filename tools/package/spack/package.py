@@ -8,7 +8,7 @@ class Slideline(CMakePackage):
 
     license("MIT")
 
-    version("0.2.0")
+    version("0.4.0")
 
     variant("mpi", default=False, description="Share explicit runs among processes")
     variant("umfpack", default=True, description="Solve large implicit systems by UMFPACK")
