@@ -8,7 +8,7 @@ import pytest
 
 from slideline_tools import cli
 
-COMMANDS = ("info", "plot", "animate", "compare", "advise", "report", "draw", "make-deck",
+COMMANDS = ("info", "plot", "animate", "compare", "answer", "advise", "report", "draw", "make-deck",
             "completion")
 
 

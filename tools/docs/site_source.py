@@ -116,7 +116,8 @@ def navigation(folder, keywords):
               ("contact", "elements", "materials", "time_integration", "implicit", "rigid_bodies")]
     return [
         {"Start": ["index.md", {"Quick start": "quick_start.md"}, {"First steps": "first_steps.md"},
-                   {"Tutorial": "tutorial.md"}, {"Gallery": "gallery.md"}, {"Choose": "choose.md"},
+                   {"Tutorial": "tutorial.md"}, {"An answer with its error": "answer.md"}, {"Gallery": "gallery.md"},
+                   {"Choose": "choose.md"},
                    {"Glossary": "glossary.md"}, {"Building": "building.md"}, {"Meshes": "meshes.md"},
                    {"Coming from LS-DYNA": "coming_from_ls_dyna.md"},
                    {"What was let go": "let_go.md"},

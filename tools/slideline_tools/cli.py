@@ -5,7 +5,7 @@ import os
 import sys
 
 from slideline_tools import UserError, __version__
-from slideline_tools.commands import Formatter, RUN, FILE, add, decks, numbers, pictures
+from slideline_tools.commands import Formatter, RUN, FILE, add, answers, decks, numbers, pictures
 
 DONE, UNUSABLE = 0, 2
 NO_READER = 141  # what a shell gives for a program that SIGPIPE ends
@@ -15,6 +15,7 @@ EPILOG = f"""Examples:
   slideline-tools draw deck.k -o model.png          # before the run: is this what I meant?
   slideline-tools report {RUN}           # after it: everything in one HTML file
   slideline-tools plot {FILE} -o x.png
+  slideline-tools answer deck.k --of glstat:internal:end --within 2%    # a number with its error
   slideline-tools advise {RUN}           # what the run could have done without
 
 A RUN is the folder of its results, or any file in it. Every COMMAND explains its options with
@@ -36,7 +37,7 @@ def build_parser():
                     "run, and write scene decks.")
     parser.add_argument("--version", action="version", version=f"slideline-tools {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for group in (pictures, numbers, decks):
+    for group in (answers, pictures, numbers, decks):
         group.add_all(commands)
     add(commands, completion, "completion", "script that completes words in the shell",
         "Print a script that completes the commands, options and choices of slideline-tools.", """\

@@ -3,29 +3,35 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 
 
 @dataclasses.dataclass
 class Block:
-    """One keyword (without the star, upper case) and its data lines."""
+    """One keyword (without the star, upper case), its data lines, and the line of the keyword as it stands."""
 
     keyword: str
     lines: list[str]
     width: int = 10
+    head: str = ""
 
     @property
     def is_titled(self) -> bool:
         """Whether a title line stands before the first card."""
         return self.keyword.endswith(("_TITLE", "_ID"))
 
-    def fields(self, line: int) -> list[str]:
-        """The fields of one line, comma or columns; none beyond the end of the block."""
+    def fields(self, line: int, *widths: int) -> list[str]:
+        """The fields of one line, comma or columns (of `widths` where they are not all alike); none beyond the end of
+        the block."""
         if line >= len(self.lines):
             return []
-        text = self.lines[line]
+        text = self.lines[line].rstrip()
         if "," in text:
             return [field.strip() for field in text.split(",")]
-        return [text[k:k + self.width].strip() for k in range(0, len(text.rstrip()), self.width)]
+        if widths and self.width == 10:
+            starts = [0, *itertools.accumulate(widths)]
+            return [text[a:b].strip() for a, b in itertools.pairwise(starts) if a < len(text)]
+        return [text[k:k + self.width].strip() for k in range(0, len(text), self.width)]
 
     def number(self, line: int) -> int:
         """The whole number in the first field of a line; 0 where there is none."""
@@ -42,7 +48,7 @@ def read_blocks(text: str, *prefixes: str) -> list[Block]:
             if name == "KEYWORD":
                 wide = "LONG=Y" in line.upper() or "LONG=K" in line.upper()
             long = (wide or name.endswith("+")) and not name.endswith("-")
-            blocks.append(Block(name.rstrip("+-%"), [], 20 if long else 10))
+            blocks.append(Block(name.rstrip("+-%"), [], 20 if long else 10, line))
         elif not line.startswith("$") and blocks:
             blocks[-1].lines.append(line)
     return [one for one in blocks if one.keyword.startswith(prefixes)] if prefixes else blocks

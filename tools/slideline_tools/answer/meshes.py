@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+"""Runs of a deck on finer and finer meshes, kept in a folder and taken up again."""
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import pathlib
+import subprocess
+import typing
+
+from slideline_tools import UserError
+from slideline_tools.answer.divide import divided
+from slideline_tools.draw.model import check_deck
+from slideline_tools.histories import read_csv
+from slideline_tools.program import Outcome, find_program, run
+
+RECORD = "answer_run.json"
+
+
+@dataclasses.dataclass(frozen=True)
+class MeshRun:
+    """A finished run: the factor of its mesh, its elements, element updates (elements times cycles) and seconds."""
+
+    mesh: int
+    elements: int
+    updates: int
+    seconds: float
+    outcome: Outcome
+    kept: bool = False
+
+
+@dataclasses.dataclass
+class Meshes:
+    """The meshes of a deck.
+
+    `deck`        the deck; with `parameter` and {parameter} in its name, the decks of a generator
+    `folder`      of the runs, one below it for each mesh
+    `parameter`   of the deck, or in its name, that makes the mesh; '' where the mesh is divided
+    `parameters`  of all runs, as for `program.run`
+    """
+
+    deck: pathlib.Path
+    folder: pathlib.Path
+    program: str
+    threads: int = 1
+    parameter: str = ""
+    parameters: dict[str, typing.Any] = dataclasses.field(default_factory=dict)
+    _sets: dict[int, list[int]] | None = None
+
+    @property
+    def name(self) -> str:
+        """The stem of the deck, without its parameter."""
+        return self.deck.stem.replace(f"{{{self.parameter}}}", "").rstrip("_-.") if self.parameter else self.deck.stem
+
+    def run(self, factor: int) -> MeshRun:
+        """The run on the mesh divided by `factor`: as it is kept, else anew. RunError where it fails."""
+        deck, parameters = self.deck_of(factor)
+        folder = self.folder / f"mesh_{factor}"
+        mark = self.mark(deck, parameters)
+        if (kept := self.record(folder, deck, parameters, mark)) is not None:
+            return kept
+        outcome = run(deck, folder, program=self.program, threads=self.threads, **parameters)
+        cycles = int(outcome.history("glstat")["cycle"][-1])
+        elements = count_elements(folder / f"{outcome.job}.effective.k")
+        timing = outcome.history("timing")
+        seconds = float(timing["seconds"][timing["phase"] == "total"][0])
+        facts = {"mark": mark, "elements": elements, "updates": elements * cycles, "seconds": seconds}
+        (folder / RECORD).write_text(json.dumps(facts) + "\n", encoding="ascii")
+        return MeshRun(factor, elements, elements * cycles, seconds, outcome)
+
+    def deck_of(self, factor: int) -> tuple[pathlib.Path, dict[str, typing.Any]]:
+        """The deck of a mesh and its parameters."""
+        if f"{{{self.parameter}}}" in self.deck.name:
+            return self.deck.with_name(self.deck.name.replace(f"{{{self.parameter}}}", str(factor))), self.parameters
+        if self.parameter:
+            return self.deck, {**self.parameters, f"p:{self.parameter}": factor}
+        if factor == 1:
+            return self.deck, self.parameters
+        path = self.folder / f"mesh_{factor}" / f"{self.deck.stem}.k"
+        text = (self.folder / "mesh_1" / f"{self.deck.stem}.effective.k")
+        whole = divided(text.read_text(encoding="utf-8"), self.sets(text), factor)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(whole, encoding="utf-8")
+        return path, {}
+
+    def sets(self, deck: pathlib.Path) -> dict[int, list[int]]:
+        """The nodes of the node sets, in their order, as the program has them."""
+        if self._sets is None:
+            model = check_deck(deck, self.program)
+            self._sets = {one.id: model.node_ids[one.nodes].tolist() for one in model.node_sets.values()}
+        return self._sets
+
+    def mark(self, deck: pathlib.Path, parameters) -> str:
+        """A digest of what a run depends on; of its includes the first run's effective deck tells."""
+        if not deck.is_file():
+            raise UserError(f"{deck}: no such file")
+        parts = [deck.read_bytes(), json.dumps(parameters, sort_keys=True, default=str).encode(), version(self.program)]
+        return hashlib.sha256(b"\0".join(parts)).hexdigest()
+
+    def record(self, folder, deck, parameters, mark) -> MeshRun | None:
+        """The kept run of a folder where it is of the same deck, parameters and program."""
+        try:
+            facts = json.loads((folder / RECORD).read_text(encoding="ascii"))
+        except (OSError, ValueError):
+            return None
+        if facts.get("mark") != mark:
+            return None
+        factor = int(folder.name.rpartition("_")[2])
+        return MeshRun(factor, facts["elements"], facts["updates"], facts["seconds"],
+                       Outcome(folder, deck.stem, dict(parameters), 0, ""), True)
+
+
+def version(program: str) -> bytes:
+    """What the program says of itself."""
+    try:
+        return subprocess.run([program, "--version"], capture_output=True, check=False).stdout
+    except OSError as problem:
+        from slideline_tools.program import not_run
+        raise UserError(not_run(program, problem)) from problem
+
+
+def count_elements(deck: pathlib.Path) -> int:
+    """Elements of an effective deck."""
+    from slideline_tools.effective_deck import read_blocks
+    return sum(len(block.lines) for block in read_blocks(deck.read_text(encoding="utf-8"), "ELEMENT_SHELL"))

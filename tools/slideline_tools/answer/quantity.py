@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""Quantities of a run by their words: HISTORY:COLUMN[@KEY=VALUE,...][:MEASURE] and field:NAME[@x=X,y=Y]:MEASURE."""
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from slideline_tools import UserError
+from slideline_tools.fields import scalar_field
+from slideline_tools.histories import TEXT_COLUMNS
+from slideline_tools.names import missing
+from slideline_tools.program import Outcome
+
+MEASURES = ("largest", "smallest", "mean", "impulse", "end")
+FORM = "HISTORY:COLUMN[@KEY=VALUE,...][:largest|smallest|mean|impulse|end|at=T]"
+
+
+@dataclasses.dataclass(frozen=True)
+class Quantity:
+    """One quantity.
+
+    `text`      as asked for
+    `table`     name of the history, or `field`
+    `column`    its column, or the field such as `mises` or `stress:xy`
+    `where`     the rows that are meant, by column; of a field x and y, where it is wanted at a point
+    `measure`   one of MEASURES, or `at`
+    `time`      of `at`
+    """
+
+    text: str
+    table: str
+    column: str
+    where: tuple[tuple[str, str], ...] = ()
+    measure: str = "largest"
+    time: float = 0.0
+
+    def of(self, outcome: Outcome) -> float:
+        """Its value in a run; UserError, with the nearest name, where the run has no such thing."""
+        times, values = self.field_series(outcome) if self.table == "field" else self.series(outcome)
+        value = self.measured(times, values)
+        if not np.isfinite(value):
+            raise UserError(f"{self.text}: no finite number in {outcome.folder / outcome.job}")
+        return value
+
+    def series(self, outcome: Outcome) -> tuple[np.ndarray, np.ndarray]:
+        """Times and values of one series of a history."""
+        table = outcome.history(self.table)
+        for name, text in self.where:
+            if name not in table.entity_columns:
+                raise UserError(f"{self.text}: {self.table} has no series by '{name}'{missing(name, table.entity_columns)}")
+            there = sorted(set(table[name].tolist()))
+            table = table.where(**{name: text if name in TEXT_COLUMNS else number(self.text, text)})
+            if not len(table):
+                raise UserError(f"{self.text}: {self.table} has no {name} {text}; there are {', '.join(map(str, there))}")
+        values = table[self.column]
+        if values.dtype.kind not in "iuf":
+            raise UserError(f"{self.text}: {self.column} is no number")
+        if not len(table):
+            raise UserError(f"{self.text}: {self.table} has no rows")
+        if len(series := table.series()) > 1:
+            raise UserError(f"{self.text}: {self.table} has {len(series)} series: {'; '.join(map(table.entity_label, (key for key, _ in series[:8])))}"
+                            f"; choose one by {self.table}:{self.column}@{table.entity_columns[0]}=...")
+        return table["time"], values
+
+    def field_series(self, outcome: Outcome) -> tuple[np.ndarray, np.ndarray]:
+        """Times and values of a field: at a point of the initial mesh, else its extremes over all nodes or elements."""
+        results = outcome.results
+        field = scalar_field(results, self.column)
+        if not self.where:
+            return results.times, (field.values.min if self.measure == "smallest" else field.values.max)(axis=1)
+        point = [number(self.text, dict(self.where)[axis]) for axis in "xy"]
+        start = results.points[0][:, :2] - results.point_field("displacement")[0][:, :2]
+        places = start if field.at_nodes else start[results.cells].mean(axis=1)
+        return results.times, field.values[:, np.argmin(np.linalg.norm(places - point, axis=1))]
+
+    def measured(self, times: np.ndarray, values: np.ndarray) -> float:
+        """The one number of a series."""
+        if self.measure == "at":
+            if not times[0] <= self.time <= times[-1]:
+                raise UserError(f"{self.text}: the run has times from {times[0]:.6g} to {times[-1]:.6g}")
+            return float(np.interp(self.time, times, values))
+        if self.measure in ("impulse", "mean"):
+            impulse = float(np.trapezoid(values, times))
+            return impulse if self.measure == "impulse" else impulse / (times[-1] - times[0]) if len(times) > 1 else float(values[0])
+        return float({"largest": np.max, "smallest": np.min, "end": lambda some: some[-1]}[self.measure](values))
+
+
+def number(what: str, text: str) -> float:
+    """A number of a quantity."""
+    try:
+        return float(text)
+    except ValueError:
+        raise UserError(f"{what}: '{text}' is no number") from None
+
+
+def parse(text: str) -> Quantity:
+    """A quantity from its words."""
+    table, _, rest = text.partition(":")
+    column, at, rest = rest.partition("@") if "@" in rest else (rest, "", "")
+    selected, _, measure = (rest if at else column).rpartition(":") if ":" in (rest if at else column) else (rest if at else column, "", "")
+    if measure and measure not in MEASURES and not measure.startswith("at="):
+        if at or table != "field":
+            raise UserError(f"{text}: no measure '{measure}'{missing(measure, (*MEASURES, 'at=T'))}")
+        selected, measure = column, ""  # field:stress:xy
+    column, where = (column, selected) if at else (selected, "")
+    if not table or not column:
+        raise UserError(f"'{text}': expected {FORM}, or field:NAME:largest")
+    pairs = []
+    for pair in where.split(",") if at else ():
+        name, equals, value = pair.partition("=")
+        if not name or not equals or not value:
+            raise UserError(f"{text}: '{pair}': expected KEY=VALUE")
+        pairs.append((name, value))
+    if table == "field" and pairs and sorted(name for name, _ in pairs) != ["x", "y"]:
+        raise UserError(f"{text}: a field is taken at @x=X,y=Y")
+    time = number(text, measure[3:]) if measure.startswith("at=") else 0.0
+    return Quantity(text, table, column, tuple(pairs), measure.partition("=")[0] or "largest", time)
