@@ -18,6 +18,7 @@ module deck_m
   use deck_curves_m, only : table_t, read_curves, read_systems
   use deck_erosion_m, only : read_erosions
   use deck_functions_m, only : check_functions
+  use deck_hanging_m, only : read_hanging_nodes, check_hanging_nodes
   use deck_implicit_m, only : read_implicit, check_implicit
   use deck_inertia_m, only : inertia_t, set_inertias
   use deck_loads_m, only : read_nodal_loads, read_rigid_loads, read_body_loads, read_pressures, &
@@ -146,7 +147,7 @@ contains
     type(eos_t), allocatable :: equations(:)
     type(inertia_t), allocatable :: inertias(:)
     logical, allocatable :: is_sound(:), fixed(:, :) !! (n_element), (2, n_node)
-    integer, allocatable :: codes(:), owner(:)
+    integer, allocatable :: codes(:), owner(:), hanging_lines(:)
     type(hourglass_t) :: hourglass
     logical :: erodes
     type(location_t), allocatable :: locations(:)          !! of pressure loads
@@ -167,6 +168,7 @@ contains
     call set_pressure_moduli(deck, equations, model)
     call set_plane_stress(deck, model)
     call read_mesh(deck, model, codes, is_sound, body%is_sound)
+    call read_hanging_nodes(deck, model, hanging_lines)
     call read_sets(deck, model, body%is_whole)
     call read_histories(deck, model)
     call read_cross_sections(deck, model)
@@ -190,6 +192,7 @@ contains
     allocate (model%mesh%deck_node(model%mesh%n_node))
     model%mesh%deck_node = [(i, i=1, model%mesh%n_node)]
     call read_contacts(deck, kinds, locations, is_sound, body, model)
+    call check_hanging_nodes(deck, hanging_lines, owner, model)
     call check_functions(deck, model)
     call read_relaxation(deck, model)
     call read_ends(deck, model, body%is_sound)

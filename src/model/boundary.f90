@@ -19,17 +19,19 @@ module boundary_m
 contains
 
   !> Exterior edges of the chosen elements with both nodes in `among`. Linear in elements and nodes,
-  !> except for the sorting of the edges found.
-  pure subroutine find_boundary(element_nodes, chosen, among, boundary)
+  !> except for the sorting of the edges found. An edge and its two halves to a hanging node, all of
+  !> chosen elements, lie inside.
+  pure subroutine find_boundary(element_nodes, chosen, among, boundary, hanging)
     integer, intent(in) :: element_nodes(:, :) !! (4, n) counter-clockwise; triangles repeat node 3
     logical, intent(in) :: chosen(:)           !! (n)
     logical, intent(in) :: among(:)            !! (n_node)
     type(boundary_t), intent(out) :: boundary
+    integer, allocatable, intent(in) :: hanging(:, :) !! (3, n) as in mesh_t, nodes 0: not there
     integer, allocatable :: latest(:)   !! (n_node) last edge so far with this lower node
     integer, allocatable :: before(:)   !! previous edge with the same lower node, 0: none
     logical, allocatable :: is_outer(:) !! by edge: 4 (element - 1) + first corner
     integer, allocatable :: outer(:)
-    integer :: i, edge, other, node, ends(2)
+    integer :: i, edge, other, node, ends(2), halves(3)
 
     allocate (latest(size(among)), before(4*size(chosen)), source=0)
     allocate (is_outer(4*size(chosen)), source=.false.)
@@ -47,6 +49,14 @@ contains
       before(edge) = latest(node)
       latest(node) = edge
     end do
+    if (allocated(hanging)) then
+      do i = 1, size(hanging, 2)
+        if (any(hanging(:, i) < 1)) cycle
+        halves = [edge_between(hanging(1, i), hanging(2, i)), edge_between(hanging(1, i), &
+          hanging(3, i)), edge_between(hanging(2, i), hanging(3, i))]
+        if (all(halves > 0)) is_outer(halves) = .false.
+      end do
+    end if
     outer = pack([(i, i=1, size(is_outer))], is_outer)
     ! By first node, then lower node, then element.
     outer = outer(sorted_order([(sum(ends_of(outer(i))*[size(among) + 1_long, 0_long]) &
@@ -72,6 +82,18 @@ contains
       corner = modulo(edge - 1, 4) + 1
       ends = element_nodes([corner, modulo(corner, 4) + 1], (edge + 3)/4)
     end function ends_of
+
+    !> The edge between two nodes if it is the only one, or 0.
+    pure function edge_between(a, b) result(edge)
+      integer, intent(in) :: a, b
+      integer :: edge
+
+      edge = latest(min(a, b))
+      do while (edge > 0)
+        if (is_outer(edge) .and. maxval(ends_of(edge)) == max(a, b)) return
+        edge = before(edge)
+      end do
+    end function edge_between
 
   end subroutine find_boundary
 

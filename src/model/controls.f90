@@ -102,6 +102,7 @@ module controls_m
     integer :: running_cycles = 0  !! cycles between running restart files (RUNRSF), 0 = none
     integer :: status_interval = 0 !! cycles between progress lines (IKEDIT); 0 = the program's
                                    !! choice
+    logical :: has_errors = .false. !! errors of elements in the states (*DATABASE_ERROR_INDICATOR)
   contains
     procedure :: visit => visit_output
   end type output_plan_t
@@ -326,6 +327,7 @@ contains
     call visitor%visit('dump_cycles', self%dump_cycles)
     call visitor%visit('running_cycles', self%running_cycles)
     call visitor%visit('status_interval', self%status_interval)
+    call visitor%visit('has_errors', self%has_errors)
   end subroutine visit_output
 
   !> Visit the components of the controls, without `implicit`: implicit runs have one process.

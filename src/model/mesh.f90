@@ -21,6 +21,11 @@ module mesh_m
                                                 !! a triangle repeats its third node
     integer, allocatable :: element_part(:)     !! (n_element) index into model%parts
     integer, allocatable :: deck_node(:)        !! (n_node) index of the k-th node of the deck
+    integer, allocatable :: hanging(:, :)       !! (3, n) hanging node in the middle of an edge, and
+                                                !! the ends of the edge, its parents; allocated
+                                                !! where the deck has some
+    integer, allocatable :: dependents(:, :)    !! (2, 2 n) each parent, and its hanging node, by
+                                                !! rising parent, after renumbering
   contains
     procedure :: visit => visit_mesh
   end type mesh_t
@@ -39,6 +44,8 @@ contains
     call visitor%visit('element_id', self%element_id, of_elements)
     call visitor%visit('element_nodes', self%element_nodes, of_elements)
     call visitor%visit('element_part', self%element_part, of_elements)
+    call visitor%visit('hanging', self%hanging)
+    call visitor%visit('dependents', self%dependents)
   end subroutine visit_mesh
 
 end module mesh_m

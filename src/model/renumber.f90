@@ -7,6 +7,7 @@ module renumber_m
   use history_tables_m, only : table_bndout
   use kinds_m, only : wp, long
   use layout_building_m, only : build_slots, build_local_numbers, order_nodes
+  use mesh_m, only : mesh_t
   use model_m, only : model_t, mark_supports
   use rigids_m, only : mark_rigid_nodes
   use sorting_m, only : sorted_order
@@ -45,6 +46,7 @@ contains
       end do
       mesh%deck_node = new_index
     end associate
+    if (allocated(model%mesh%hanging)) call renumber_hanging(new_index, model%mesh)
     call renumber_conditions(model, order, new_index)
     call renumber_bodies(model, new_index)
     call build_local_numbers(model%mesh, model%layout)
@@ -78,7 +80,8 @@ contains
       deallocate (model%mesh%deck_node)
   end subroutine release_start_data
 
-  !> Mark nodes with contact, loads, prescribed motion, force groups or rigid walls.
+  !> Mark nodes with contact, loads, prescribed motion, force groups or rigid walls, and hanging
+  !> nodes with their parents.
   subroutine mark_touched_nodes(model, is_special)
     type(model_t), intent(in) :: model
     logical, intent(inout) :: is_special(:) !! (n_node) or (n_special)
@@ -89,6 +92,7 @@ contains
       is_special(model%contacts(i)%master%nodes) = .true.
     end do
     if (model%erodes) call mark_hidden_nodes(model, is_special)
+    if (allocated(model%mesh%hanging)) is_special([model%mesh%hanging]) = .true.
     associate (conditions => model%conditions, output => model%controls%output)
       is_special(conditions%motions%node) = .true.
       is_special(conditions%nodal_loads%node) = .true.
@@ -146,6 +150,23 @@ contains
       if (may_open(model%mesh%element_part(i))) is_special(model%mesh%element_nodes(:, i)) = .true.
     end do
   end subroutine mark_hidden_nodes
+
+  !> Renumber hanging nodes, and list them by parent.
+  subroutine renumber_hanging(new_index, mesh)
+    integer, intent(in) :: new_index(:)
+    type(mesh_t), intent(inout) :: mesh
+    integer :: k
+
+    do k = 1, 3
+      mesh%hanging(k, :) = new_index(mesh%hanging(k, :))
+    end do
+    associate (parents => [mesh%hanging(2, :), mesh%hanging(3, :)], &
+      nodes => [mesh%hanging(1, :), mesh%hanging(1, :)])
+      associate (order => sorted_order(int(parents, long)))
+        mesh%dependents = transpose(reshape([parents(order), nodes(order)], [size(order), 2]))
+      end associate
+    end associate
+  end subroutine renumber_hanging
 
   !> Renumber conditions, outputs, termination conditions and sets.
   subroutine renumber_conditions(model, order, new_index)

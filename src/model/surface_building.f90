@@ -207,7 +207,7 @@ contains
       do i = 1, size(is_left)
         if (.not. is_left(i)) is_near(mesh%element_nodes(:, i)) = .true.
       end do
-      call find_boundary(mesh%element_nodes, is_chosen, is_near, boundary)
+      call find_boundary(mesh%element_nodes, is_chosen, is_near, boundary, mesh%hanging)
       call walk_boundary(mesh, is_chosen, boundary, surface)
       surface%parts = initial%parts
     else

@@ -35,9 +35,9 @@ module results_arrays_m
     cell_starts, utf8_text
 
   !> Condition for a field in the file: none; friction or ties; axisymmetric; a material with
-  !> temperature; erosion; plane stress.
+  !> temperature; erosion; plane stress; errors asked for.
   integer, parameter :: of_all = 1, of_shear = 2, of_axisym = 3, of_heat = 4, of_erosion = 5, &
-    of_sheet = 6
+    of_sheet = 6, of_error = 7
 
   !> A field of points or cells.
   type :: field_t
@@ -48,7 +48,7 @@ module results_arrays_m
   end type field_t
 
   !> Fields, in the order in which a state writes them.
-  integer, parameter :: n_field = 18
+  integer, parameter :: n_field = 19
   !> Fields, in the order of writing.
   type(field_t), parameter :: fields(n_field) = [ &
     field_t('Points', 3, .false., of_all), &
@@ -66,6 +66,7 @@ module results_arrays_m
     field_t('CellData/mises', 0, .true., of_all), &
     field_t('CellData/hoop_strain', 0, .true., of_axisym), &
     field_t('CellData/thickness_strain', 0, .true., of_sheet), &
+    field_t('CellData/error', 0, .true., of_error), &
     field_t('CellData/temperature', 0, .true., of_heat), &
     field_t('CellData/damage', 0, .true., of_heat), &
     field_t('CellData/eroded', 0, .true., of_erosion)]

@@ -48,7 +48,7 @@ contains
     integer(long), target :: version(2)
     integer(hid_t) :: space
     integer :: status, n_planned, i
-    logical :: has(6)
+    logical :: has(7)
 
     n_planned = planned_states(model%controls)
     file%path = path
@@ -56,7 +56,8 @@ contains
     if (allocated(error)) return
     allocate (file%times(n_planned))
     has = [.true., any(has_shear(model%contacts)), model%is_axisymmetric, &
-      any(has_memory_of_heat(model%materials)), model%erodes, is_sheet(model)] ! by the needs
+      any(has_memory_of_heat(model%materials)), model%erodes, is_sheet(model), &
+      model%controls%output%has_errors] ! by the needs
     file%which = pack([(i, i=1, size(fields))], has(fields%needs))
     call create_file(file, error)
     if (allocated(error)) return
@@ -184,6 +185,7 @@ contains
     case ('CellData/hoop_strain'); call gather(places, 1, 1, rows, shot%hoop_strain)
     case ('CellData/thickness_strain')
       call gather(places, 1, 1, rows, shot%thickness_strain)
+    case ('CellData/error'); call gather(places, 1, 1, rows, shot%error)
     case ('CellData/temperature'); call gather(places, 1, 1, rows, shot%temperature)
     case ('CellData/damage'); call gather(places, 1, 1, rows, shot%damage)
     case ('CellData/eroded'); call gather(places, 1, 1, rows, shot%eroded)

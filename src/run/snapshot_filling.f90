@@ -7,6 +7,7 @@ module snapshot_filling_m
   use loads_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows
   use element_mass_m, only : element_shares
+  use hanging_nodes_m, only : move_hanging_nodes
   use element_state_m, only : add_part_energies, is_eroded, stress_of_slot, &
     plastic_strain_of_slot, find_heat, hoop_strain_of_slot, thickness_strain_of_slot
   use contacts_m, only : has_shear
@@ -19,6 +20,7 @@ module snapshot_filling_m
   use snapshot_m, only : snapshot_t, interface_result_t, slave_result_t
   use sorting_m, only : sorted_order
   use state_m, only : state_t
+  use stress_error_m, only : estimate_errors
   implicit none
   private
   public :: start_snapshot, fill_motion, find_motion, damping_at, fill_energies, fill_parts, &
@@ -68,6 +70,7 @@ contains
     if (has_history) &
       allocate (snapshot%plastic_strain(n_element), source=0.0_wp)
     if (model%is_axisymmetric) allocate (snapshot%hoop_strain(n_element), source=0.0_wp)
+    if (model%controls%output%has_errors) allocate (snapshot%error(n_element), source=0.0_wp)
     if (is_sheet(model)) allocate (snapshot%thickness_strain(n_element), source=0.0_wp)
     if (any(has_memory_of_heat(model%materials))) allocate (snapshot%temperature(n_element), &
       snapshot%damage(n_element), source=0.0_wp)
@@ -113,6 +116,21 @@ contains
     end do
     if (allocated(model%conditions%common_motions)) &
       call fill_coupled_nodes(model, state, damping, snapshot%velocity, snapshot%acceleration)
+    call fill_prescribed(model, state, velocity_next, snapshot)
+    call move_hanging_nodes(model%mesh, snapshot%velocity)
+    if (allocated(snapshot%acceleration)) &
+      call move_hanging_nodes(model%mesh, snapshot%acceleration)
+  end subroutine fill_motion
+
+  !> Fill velocity and acceleration of prescribed degrees of freedom, where they are stored.
+  subroutine fill_prescribed(model, state, velocity_next, snapshot)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: velocity_next(:) !! (n_motion) v(n+1/2)
+    type(snapshot_t), intent(inout) :: snapshot
+    real(wp) :: acceleration(2)
+    integer :: i
+
     if (.not. allocated(snapshot%displacement) .or. .not. state%dt > 0.0_wp) return
     ! Prescribed degrees of freedom: the mean of their two half-step velocities.
     do i = 1, size(model%conditions%motions)
@@ -126,7 +144,7 @@ contains
           + 0.5_wp*state%dt_before*acceleration(k)
       end associate
     end do
-  end subroutine fill_motion
+  end subroutine fill_prescribed
 
   !> D of a node: global, or its own where the deck damps parts.
   pure function damping_at(state, damping, node) result(d)
@@ -241,10 +259,13 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(snapshot_t), intent(inout) :: snapshot
-    real(wp) :: shares(4), v(2)
+    real(wp) :: shares(4), v(2), squares(2, size(snapshot%velocity, 2))
     integer :: i, k, slot, i_part
 
     if (.not. allocated(snapshot%velocity)) return
+    ! Hanging nodes have the energy of their masses at the parents.
+    squares = snapshot%velocity**2
+    call move_hanging_nodes(model%mesh, squares)
     snapshot%parts%kinetic = 0.0_wp
     snapshot%parts%momentum(1) = 0.0_wp
     snapshot%parts%momentum(2) = 0.0_wp
@@ -257,7 +278,7 @@ contains
         if (allocated(state%elements%mass_ratio)) shares = state%elements%mass_ratio(slot)*shares
         do k = 1, merge(3, 4, nodes(4) == nodes(3))
           v = snapshot%velocity(:, nodes(k))
-          part%kinetic = part%kinetic + 0.5_wp*shares(k)*(v(1)**2 + v(2)**2)
+          part%kinetic = part%kinetic + 0.5_wp*shares(k)*sum(squares(:, nodes(k)))
           part%momentum = part%momentum + shares(k)*v
           part%mass = part%mass + shares(k)
         end do
@@ -334,6 +355,8 @@ contains
       if (allocated(snapshot%damage)) call find_heat(model, state%elements, slot, &
         snapshot%temperature(i), snapshot%damage(i))
     end do
+    if (allocated(snapshot%error)) call estimate_errors(model, state, snapshot%stress, &
+      snapshot%error)
     if (size(model%contacts) == 0) return
     snapshot%contact_force = 0.0_wp
     snapshot%contact_pressure = 0.0_wp

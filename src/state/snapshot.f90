@@ -152,6 +152,7 @@ module snapshot_m
     real(wp), allocatable :: plastic_strain(:)   !! (n_element)
     real(wp), allocatable :: hoop_strain(:)      !! (n_element) of axisymmetric bodies
     real(wp), allocatable :: thickness_strain(:) !! (n_element) of plane stress
+    real(wp), allocatable :: error(:)            !! (n_element) energy of the stress error, J/m
     real(wp), allocatable :: temperature(:)      !! (n_element) temperature and damage are allocated
                                                  !! where a material has them
     real(wp), allocatable :: damage(:)           !! (n_element)

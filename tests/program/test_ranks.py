@@ -28,7 +28,7 @@ from axisymmetric_decks import rings
 from test_contact_fineness import blow
 from test_plane_stress import strip
 from test_requests import wait_for
-from test_same_bits import anvil, everything
+from test_same_bits import anvil, everything, hanging
 
 from slideline_tools.scenes import block, collision
 
@@ -125,6 +125,7 @@ SCENES = {
     "one surface, type 5": (lambda: penetration(5, is_self=True, n=16), 330, (3,), 1),
     "elements that leave, type 5": (lambda: penetration(5, n=8), 330, (2,), 1),
     "plane stress, elements that leave": (lambda: strip(4, "plastic"), 330, (2,), 1),
+    "hanging nodes, type 7": (lambda: hanging(7), 60, (3,), 2),
     "round, type 6": (lambda: rings(6), 60, (4,), 2),
     "mass that grows, type 7": (lambda: growing(7), 60, (2,), 1),
     "no contact, gravity": (settling, 60, (5,), 1),

@@ -16,7 +16,7 @@ import pytest
 from conftest import by_turns, is_full
 from erosion_decks import penetration
 from impact_decks import plates
-from meshes import Deck, grid, rotate
+from meshes import Deck, divide, grid, rotate
 from axisymmetric_decks import rings
 
 from slideline_tools.contact_types import ALL_TYPES
@@ -92,7 +92,36 @@ def anvil(kind):
     return deck.output(plot=0.02, glstat=1.0e-3, matsum=1.0e-3, rcforc=1.0e-3).text()
 
 
+def hanging(kind):
+    """Two bodies with small elements at the contact, by chance elsewhere too, on a wall and a support, with gravity, pressure,
+    damping of a part and a motion: hanging nodes on many tiles, between them and within."""
+    deck = Deck("hanging nodes").control(0.02, scale=0.8)
+    bodies, rng = [], np.random.default_rng(5)
+    for part, mesh in enumerate((grid(30, 20, 0.6, 0.3, (0.2, 0.0)), grid(40, 20, 1.0, 0.3, (0.0, -0.3))), 1):
+        coordinates, quads = mesh
+        marked = {k for k, quad in enumerate(quads) if np.any(coordinates[list(quad), 1] == 0.0)}
+        marked |= {k for k in rng.permutation(len(quads))[:150].tolist() if np.abs(coordinates[quads[k][0], 1] + 0.16) < 0.1 or part == 1}
+        coordinates, quads, pairs = divide(coordinates, quads, marked)
+        deck.part(part).elastic(1000.0, 1.0e6, 0.3, part)
+        bodies.append((deck.mesh(coordinates, quads, part=part), coordinates))
+        deck.hang(bodies[-1][0], pairs)
+    (upper, above), (lower, below) = bodies
+    faces = [ids[np.flatnonzero(x[:, 1] == 0.0)[np.argsort(x[x[:, 1] == 0.0, 0])]] for ids, x in bodies]
+    deck.node_set(1, upper).node_set(2, faces[0]).node_set(3, faces[1][::-1]).node_set(4, lower)
+    deck.contact(2, 3, kind, 2.0e4).add("*INITIAL_VELOCITY", (1,), (0.1, -1.0))
+    deck.add("*RIGIDWALL_PLANAR", (4,), (0.0, -0.3, 0.0, 0.0, 0.7, 0.0)).add("*DATABASE_RWFORC", (1.0e-3,))
+    deck.curve(1, [(0.0, 10.0), (1.0, 10.0)]).add("*LOAD_BODY_Y", (1,)).add("*DAMPING_PART_MASS", (2, 1))
+    top = upper[np.flatnonzero(above[:, 1] == 0.3)[np.argsort(above[above[:, 1] == 0.3, 0])]].tolist()
+    deck.add("*LOAD_SEGMENT", *[(1, 10.0, 0.0, b, a, a, a) for a, b in zip(top[:-1], top[1:])])
+    deck.fix(upper[above[:, 0] == 0.2], x=1)
+    for node in lower[below[:, 0] == 1.0]:
+        deck.prescribe(node, 1, 0, 1, 1.0e-2)
+    deck.add("*DATABASE_ERROR_INDICATOR")
+    return deck.output(plot=5.0e-3, glstat=5.0e-4, matsum=5.0e-4, rcforc=5.0e-4).text()
+
+
 SCENES = {
+    "hanging nodes": (hanging, ()),
     "collision": (lambda kind: collision(2, kind),
                   ("endtim=1e-5", "p:dtplot=5e-6", "p:dthist=1e-6")),
     "sliding": (fast_sliding, ("endtim=6e-6", "p:dtplot=3e-6", "p:dthist=1e-6", "p:dtforc=1e-7")),

@@ -107,6 +107,10 @@ class Deck:
             return self.fix([node], x=int(dof == 1), y=int(dof == 2))
         return self.add("*BOUNDARY_PRESCRIBED_MOTION_NODE", (int(node), dof, kind, curve, factor))
 
+    def hang(self, ids, hanging):
+        """Hanging nodes as rows of indices (node, its two parents)."""
+        return self.add("*CONSTRAINED_ADAPTIVITY", *[tuple(int(ids[node]) for node in row) for row in hanging])
+
     def contact(self, slave, master, kind, penalty, unit=0, gauss=2):
         """Our contact card between two node sets given by number."""
         return self.add("*CONTACT_2D_SLIDELINE", (-slave, -master, kind, gauss, penalty),
@@ -128,6 +132,28 @@ def grid_quads(n_x, n_y):
     row = n_x + 1
     return [(j * row + i, j * row + i + 1, (j + 1) * row + i + 1, (j + 1) * row + i)
             for j in range(n_y) for i in range(n_x)]
+
+
+def divide(coordinates, quads, marked):
+    """The marked quads in four; nodes in the middle of edges of others hang: (node, its two parents)."""
+    points, result, middles = [*np.asarray(coordinates)], [], {}
+
+    def middle(a, b):
+        if (key := (min(a, b), max(a, b))) not in middles:
+            middles[key] = len(points)
+            points.append(0.5 * (points[a] + points[b]))
+        return middles[key]
+
+    for k, quad in enumerate(quads):
+        if k not in marked:
+            continue
+        centre = len(points)
+        points.append(np.mean([points[node] for node in quad], axis=0))
+        sides = [middle(a, b) for a, b in zip(quad, np.roll(quad, -1))]
+        result += [(quad[i], sides[i], centre, sides[i - 1]) for i in range(4)]
+    kept = [tuple(quad) for k, quad in enumerate(quads) if k not in marked]
+    edges = {(min(a, b), max(a, b)) for quad in kept for a, b in zip(quad, np.roll(quad, -1))}
+    return np.array(points), kept + result, [(node, *key) for key, node in middles.items() if key in edges]
 
 
 def distorted_patch():

@@ -235,7 +235,7 @@ contains
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
     type(boundary_t) :: boundary
-    integer, allocatable :: elements(:), element_nodes(:, :), nodes(:), order(:)
+    integer, allocatable :: elements(:), element_nodes(:, :), nodes(:), order(:), hanging(:, :)
     integer :: crossing, i, k
 
     elements = elements_of(body, parts)
@@ -251,8 +251,16 @@ contains
         element_nodes(k, i) = index_among(nodes, order, element_nodes(k, i))
       end do
     end do
+    if (allocated(model%mesh%hanging)) then
+      hanging = model%mesh%hanging
+      do i = 1, size(hanging, 2)
+        do k = 1, 3
+          hanging(k, i) = index_among(nodes, order, hanging(k, i))
+        end do
+      end do
+    end if
     call find_boundary(element_nodes, spread(.true., 1, size(elements)), &
-      spread(.true., 1, size(nodes)), boundary)
+      spread(.true., 1, size(nodes)), boundary, hanging)
     call boundary_surface(boundary, spread(.true., 1, boundary%n_edge), surface, crossing)
     if (crossing > 0) then
       call reject_field(deck, location, 'has a boundary that touches itself at node ' &

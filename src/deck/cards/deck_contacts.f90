@@ -148,7 +148,8 @@ contains
         if (n > 0) body%is_uncertain(n) = .true.
       end do
     end do
-    call find_boundary(model%mesh%element_nodes, is_sound, among, body%outside)
+    call find_boundary(model%mesh%element_nodes, is_sound, among, body%outside, &
+      model%mesh%hanging)
     call sort_by_part(model, body)
   end subroutine set_outer_edges
 

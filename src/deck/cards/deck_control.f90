@@ -246,6 +246,7 @@ contains
       if (size(model%rigids) > 0) call refuse('with rigid bodies')
       if (size(conditions%motions) > 0) call refuse('with prescribed motion')
       if (allocated(conditions%common_motions)) call refuse('with *CONSTRAINED_NODE_SET')
+      if (allocated(model%mesh%hanging)) call refuse('with hanging nodes')
     end associate
 
   contains
@@ -285,6 +286,8 @@ contains
           plans(output_plot) = card
         case ('DATABASE_BINARY_D3DUMP')
           output%dump_cycles = integer_of(card, 'CYCL')
+        case ('DATABASE_ERROR_INDICATOR')
+          output%has_errors = .true.
         case ('DATABASE_BINARY_RUNRSF')
           output%running_cycles = integer_of(card, 'CYCL')
         case default

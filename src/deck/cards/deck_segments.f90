@@ -54,7 +54,8 @@ contains
       call keep_edges(.not. (is_inside(edges(1, :)) .and. is_inside(edges(2, :))), edges)
     case default
       is_chosen = is_of_part(model%mesh%element_part) .or. action == 'BOX'
-      call find_boundary(model%mesh%element_nodes, is_chosen, is_inside, boundary)
+      call find_boundary(model%mesh%element_nodes, is_chosen, is_inside, boundary, &
+        model%mesh%hanging)
       call add_edges(boundary%nodes, edges)
     end select
   end subroutine change_edges

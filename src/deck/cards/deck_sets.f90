@@ -85,7 +85,8 @@ contains
         is_of_part = .false.
         is_of_part(model%segment_sets(i)%parts) = .true.
         is_chosen = is_of_part(model%mesh%element_part)
-        call find_boundary(model%mesh%element_nodes, is_chosen, all_nodes, boundary)
+        call find_boundary(model%mesh%element_nodes, is_chosen, all_nodes, boundary, &
+          model%mesh%hanging)
         model%segment_sets(i)%nodes = boundary%nodes
       else
         if (.not. sets(i)%is_whole) sets(i)%n = 0

@@ -40,6 +40,7 @@ module deck_schema_m
     'ERODE 0 or 1 (1: elements erode when their time step falls below DTMIN times the first step ' &
     //'or their volume vanishes)', &
     'MS1ST 0 or 1 (1: mass scaling at the start only)', &
+    'DATABASE_ERROR.NORM 1 (energy of the stress error)', &
     'NRCYCK,CYCL a number of cycles', &
     'DRTOL a convergence tolerance', &
     'DRFCTR a relaxation factor', &

@@ -292,7 +292,9 @@ module deck_schema_tables_m
     'DAMPING_PART_STIFFNESS_SET r', &
     ' PSID:i>=1 COEF:f<=1', &
     'CONSTRAINED_NODE_SET tr', &
-    ' NSID:i>=1 DOF:i~1>=1<=7 TF:fr=1e20']
+    ' NSID:i>=1 DOF:i~1>=1<=7 TF:fr=1e20', &
+    'CONSTRAINED_ADAPTIVITY r', &
+    ' DNID:i>=1 NID1:i>=1 NID2:i>=1']
 
   !> Contact interfaces.
   character(104), parameter :: table_contact(*) = [character(104) :: &
@@ -360,6 +362,8 @@ module deck_schema_tables_m
     ' CYCL:i>=0<=2e9 NR:is BEAM:is NPLTC:iw PSETID:iw', &
     'DATABASE_BINARY_RUNRSF', &
     ' CYCL:i>=0<=2e9 NR:iw=1 BEAM:is NPLTC:iw PSETID:iw', &
+    'DATABASE_ERROR_INDICATOR o', &
+    ' NORM:i=1|0|1', &
     'DATABASE_HISTORY_NODE r', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_HISTORY_NODE_ID r', &

@@ -16,6 +16,7 @@ module explicit_m
   use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, exchange_tiles, &
     end_cycle
   use explicit_report_m, only : report_cycle
+  use hanging_nodes_m, only : add_hanging_forces
   use health_m, only : check_tile, warn_of_energies, energy_unaccounted
   use kinds_m, only : wp
   use mass_scaling_m, only : refine_limits
@@ -213,6 +214,8 @@ contains
       associate (run => cycle%partition%runs(:, cycle%tile_states%summed(i)))
         call sum_special_forces(model%layout, state%force_slots, run(1), run(2), &
           state%internal_force)
+        call add_hanging_forces(model%mesh, model%layout, state%force_slots, &
+          state%force_special, run, state%internal_force)
       end associate
     end do
     !$omp end do
@@ -238,8 +241,12 @@ contains
     do i = 1, size(cycle%tile_states%summed)
       associate (first => cycle%partition%runs(1, cycle%tile_states%summed(i)), &
         last => cycle%partition%runs(2, cycle%tile_states%summed(i)))
-        if (.not. cycle%has_pressures) call sum_special_forces(model%layout, state%force_slots, &
-          first, last, state%internal_force)
+        if (.not. cycle%has_pressures) then
+          call sum_special_forces(model%layout, state%force_slots, first, last, &
+            state%internal_force)
+          call add_hanging_forces(model%mesh, model%layout, state%force_slots, &
+            state%force_special, [first, last], state%internal_force)
+        end if
         if (.not. cycle%writes) then
           if (allocated(state%walls)) call apply_walls(model, cycle%leap, first, last, state)
           if (allocated(model%conditions%skew_supports)) call apply_skew_supports(model, &

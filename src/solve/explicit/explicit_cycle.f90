@@ -16,6 +16,7 @@ module explicit_cycle_m
   use element_erosion_m, only : finish_erosion, release_free_nodes, failure_log_t, &
     update_failures, update_interfaces
   use errors_m, only : error_t
+  use hanging_nodes_m, only : move_hanging_nodes
   use health_m, only : tile_check_t, check_elements, are_sound, check_step, report_collapsed, &
     check_cycle
   use history_tables_m, only : table_secforc
@@ -290,6 +291,7 @@ contains
       call add_body_motion_work(model, cycle%damping, [.not. cycle%writes, .true.], state)
       call move_rigids(model, state)
     end if
+    call move_hanging_nodes(model%mesh, state%motion)
     if (allocated(state%group_work)) call add_group_work(model, [.not. cycle%writes, .true.], state)
     if (allocated(cycle%freed)) then
       if (monitor%ranks%n > 1) call gather_motion(cycle%partition, .true., monitor%ranks, state)

@@ -8,6 +8,7 @@
 module node_motion_m
   use conditions_m, only : motion_displacement
   use element_mass_m, only : element_shares
+  use hanging_nodes_m, only : share_hanging_forces
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use loads_m, only : damping_rates, is_active, next_velocity, part_damping_rate
@@ -184,6 +185,7 @@ contains
         end associate
       end do
     end do
+    call share_hanging_forces(model%mesh, state%node_damping)
     do k = 1, size(state%mass)
       if (state%mass(k) > 0.0_wp) state%node_damping(:, k) = state%node_damping(:, k)/state%mass(k)
     end do

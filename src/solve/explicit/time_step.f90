@@ -14,6 +14,7 @@ module time_step_m
   use controls_m, only : contact_step_rules, contact_step_free, contact_step_warns
   use curves_m, only : curve_value, curve_is_constant
   use errors_m, only : error_t, raise, status_input
+  use hanging_nodes_m, only : move_hanging_nodes
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use log_m, only : log_t, warn, write_log, to_text
@@ -340,6 +341,7 @@ contains
         if (is_active(motion, state%time)) next(motion%direction, motion%node) = velocity(i)
       end associate
     end do
+    call move_hanging_nodes(model%mesh, next)
     change = 0.0_wp
     do i_tile = partition%first_tile, partition%last_tile
       do i_chunk = model%layout%tiles(i_tile)%first_chunk, model%layout%tiles(i_tile)%last_chunk

@@ -16,6 +16,7 @@ module start_m
   use element_start_m, only : start_elements
   use element_steps_m, only : start_retardation
   use errors_m, only : error_t, raise, status_input, status_run
+  use hanging_nodes_m, only : share_hanging_masses, move_hanging_nodes
   use history_tables_m, only : table_nodfor
   use interface_m, only : start_contact, resume_contact
   use kinds_m, only : wp
@@ -63,7 +64,7 @@ contains
       call check_added_mass(model, state%elements, error, log)
       if (allocated(error)) return
     end if
-    call start_coupled_nodes(model, state)
+    call start_constrained_nodes(model, state)
     call start_vectors(known, model%mesh%n_node, state%inverse_mass)
     do k = 1, size(known, 2)
       do i = known(1, k), known(2, k)
@@ -331,13 +332,16 @@ contains
     end do
   end function is_held
 
-  !> Set the velocity of coupled nodes to their mean over the masses, which keeps the momentum.
-  subroutine start_coupled_nodes(model, state)
+  !> Masses of hanging nodes go to their parents, whose mean velocity they get. Set the velocity of
+  !> coupled nodes to their mean over the masses, which keeps the momentum.
+  subroutine start_constrained_nodes(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     real(wp) :: first
     integer :: i, k
 
+    call share_hanging_masses(model%mesh, state%mass)
+    call move_hanging_nodes(model%mesh, state%motion)
     if (.not. allocated(model%conditions%common_motions)) return
     do i = 1, size(model%conditions%common_motions)
       associate (common => model%conditions%common_motions(i))
@@ -349,7 +353,7 @@ contains
         end do
       end associate
     end do
-  end subroutine start_coupled_nodes
+  end subroutine start_constrained_nodes
 
   !> Set the inverse masses of the nodes of all interfaces, 0 where fixed or prescribed. A node of a
   !> rigid body has its mass in contact, with which no force has a larger effect than on the body; 0
