@@ -99,6 +99,10 @@ class Mesh:
         self.points[number] = sum(weight * self.points[node] for node, weight in self.weights[number])
         return number
 
+    def new_between(self, edge: frozenset) -> list[int]:
+        """The new nodes of an edge."""
+        return self.between[edge][1]
+
     def along(self, a: int, b: int) -> list[int]:
         """The nodes from a to b of an edge, both ends too."""
         first, new = self.between[frozenset((a, b))]
@@ -189,7 +193,7 @@ class Mesh:
         full = [held.issuperset(one[2]) for one in self.elements]
         for edge, on in self.sides.items():
             if held >= edge and (len(on) == 1 or any(full[k] for k in on) or not edge <= self.outside):
-                found += self.between[edge][1]
+                found += self.new_between(edge)
         return found + [node for k, new in enumerate(self.inside) if full[k] for node in new]
 
     def walked(self, nodes: list[int], ordered: bool) -> list[int]:
@@ -226,13 +230,22 @@ def divided(text: str, sets: dict[int, list[int]], count: int) -> str:
     """The effective deck `text` on its mesh divided by `count`; `sets`: the nodes of its node sets as the program has
     them. UserError where something in it cannot be carried along."""
     blocks = read_blocks(text)
-    for block in blocks:
-        known = block.keyword.startswith(UNCHANGED) or block.keyword in HANDLED or block.keyword.startswith("SET_NODE")
-        if not known or block.keyword.startswith(REFUSED):
-            raise UserError(f"a mesh with *{block.keyword} cannot be divided")
+    check_known(blocks)
     mesh = Mesh(blocks)
     mesh.divide(count)
-    deck = Division(blocks, mesh, sets, count)
+    return deck_of(blocks, Division(blocks, mesh, sets, count))
+
+
+def check_known(blocks: list[Block], *others: str) -> None:
+    """UserError where a keyword, but for these others, cannot be carried along."""
+    for block in blocks:
+        known = block.keyword.startswith(UNCHANGED) or block.keyword in (*HANDLED, *others) or block.keyword.startswith("SET_NODE")
+        if not known or block.keyword.startswith(REFUSED):
+            raise UserError(f"a mesh with *{block.keyword} cannot be divided")
+
+
+def deck_of(blocks: list[Block], deck: Division) -> str:
+    """The text of the deck."""
     lines = []
     for block in blocks:
         if block.keyword == "END":
@@ -299,7 +312,7 @@ class Division:
 
     def pieces(self, a, b):
         """The pieces of an edge."""
-        if frozenset((a, b)) not in self.mesh.between:
+        if frozenset((a, b)) not in self.mesh.sides:
             raise UserError(f"no element has the edge {a}, {b}")
         return itertools.pairwise(self.mesh.along(a, b))
 
@@ -372,7 +385,7 @@ class Division:
             self.scaled(fields, place, 1.0 / self.count)
         if len(fields) > 5 and whole(fields[5]):
             fields[5] = str(self.divided_curve(whole(fields[5])))
-        return [block.head, ",".join(fields) + ",", *block.lines[1:]]
+        return [block.head, ",".join(fields).rstrip(",") + ",", *block.lines[1:]]
 
     def divided_curve(self, number):
         """A copy of a curve with its ordinates over the count; its number."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The commands that write decks: make-deck and from-mesh. An option of a scene has the name of the
+"""The commands that write decks: make-deck, from-mesh and refine. An option of a scene has the name of the
 parameter of the function that writes it, and what is not given is left to that function."""
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import argparse
 import pathlib
 
 from slideline_tools import UserError
-from slideline_tools.commands import add, output_to
+from slideline_tools.commands import PROGRAM, add, output_to
 
 SCENES = {  # name -> what it is, refinement levels, Gauss points of type 6 (no contact: 0)
     "collision": ("projectile on a plate, half model", "1 to 4 in the paper", 4),
@@ -75,6 +75,22 @@ make-deck SCENE --help""").add_subparsers(dest="scene", required=True, metavar="
                                help="slave and master surface exchanged")
         for option, words in OWN_OPTIONS.get(name, ()):
             scene.add_argument(option, **words)
+    add(commands, refine, "refine", "the deck of a run on a mesh that is finer where it pays",
+        "Write the deck of a run with the elements divided in four whose stress errors are largest, from time zero on. "
+        "Neighbours differ by one division at most, with hanging nodes between them (*CONSTRAINED_ADAPTIVITY); "
+        "elements along a contact surface are divided all or none. The run needs *DATABASE_ERROR_INDICATOR "
+        "for the field error.", """\
+refine results/hertz --fraction 0.5 -o hertz_2.k
+refine results/hertz --fraction 0.3 --surfaces -o hertz_2.k
+refine results/bar --field plastic_strain -o bar_2.k
+
+The new deck has the keyword too: run it and refine it again.""",
+        ("run_path", {"metavar": "RUN", "help": "folder of a run, or a file of it"}),
+        ("--fraction", {"type": float, "default": 0.5, "metavar": "X",
+                        "help": "share of the sum of the field that the divided elements have (0.5)"}),
+        ("--field", {"default": "error", "metavar": "NAME", "help": "cell field that says where (error)"}),
+        ("--surfaces", {"action": "store_true", "help": "divide the elements along all contact surfaces too"}),
+        output_to("deck file to write", required=True), PROGRAM)
     add(commands, from_mesh, "from-mesh", "the skeleton of a deck from a mesh of gmsh and others",
         "Write the skeleton of a deck from a mesh file: nodes, quads and triangles, physical groups"
         " of faces as parts, of lines as segment and node sets, of points as node sets; materials, "
@@ -124,4 +140,18 @@ def from_mesh(options) -> int:
         print(f"set {sid}: {name}, {counted(len(rows), kind)}")
     for note in mesh.notes:
         print(note)
+    return 0
+
+
+def refine(options) -> int:
+    """Write the deck of a run on a mesh that is finer where it pays."""
+    from slideline_tools.answer.refine import refine_run
+    from slideline_tools.finished_run import Run
+    from slideline_tools.program import find_program
+    if not 0.0 < options.fraction <= 1.0:
+        raise UserError(f"--fraction {options.fraction:g}: expected more than 0 and at most 1")
+    text, divided, total = refine_run(Run(options.run_path), find_program(options.program), options.fraction, options.field,
+                                      options.surfaces)
+    pathlib.Path(options.output).write_text(text, encoding="utf-8")
+    print(f"{options.output}: {divided} elements divided, {total} in all")
     return 0
