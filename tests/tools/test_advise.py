@@ -41,7 +41,7 @@ def test_figures_are_those_of_the_deck(runs):
     found = topics(runs["all"])
     run = advise(runs["all"])[0]
     # The columns of the block are 20/24 mm wide: the shortest length of all elements.
-    assert geometry.element_limit(run) == pytest.approx(20.0e-3 / 24 / 6000.98, rel=1e-3)
+    assert run.element_limit == pytest.approx(20.0e-3 / 24 / 6000.98, rel=1e-3)
     # Flight of 1e-4 s of 3e-4 s; a third of what is paid per cycle.
     expected = run.seconds_of("loop") + run.seconds_of("output")
     assert found["long flight"].seconds == pytest.approx(expected / 3.0, rel=0.05)
@@ -67,7 +67,7 @@ def test_plate_that_yields_and_bodies_that_touch(slideline, tmp_path):
                           capture_output=True, text=True, check=False)
     assert done.returncode == 0
     assert not set(topics(tmp_path)) & {"never yielded", "never touched", "symmetry",
-                                        "long flight", "rigid", "long surface", "dear type"}
+                                        "long flight", "rigid", "long surface"}
 
 
 def test_short_touch_between_rows_is_not_overlooked(tmp_path):
@@ -168,13 +168,6 @@ def test_mirror_images():
     assert geometry.mirror_pairs(points, 1).tolist() == [4, 5, 6, 7, 0, 1, 2, 3]
 
 
-def test_areas_and_limits():
-    points = np.array([[0, 0], [2, 0], [2, 1], [0, 1.0]])
-    area, length = geometry.corner_difference(points, np.array([[0, 1, 2, 3], [0, 1, 2, 2]]))
-    np.testing.assert_allclose(area, [2.0, 1.0])
-    np.testing.assert_allclose(length, [1.0, 1.0 / np.sqrt(5.0)])
-
-
 def test_coarser_rows():
     times = np.linspace(0.0, 1.0, 101)
     straight, bent = np.stack([times], axis=1), np.stack([np.sin(40.0 * times)], axis=1)
@@ -236,17 +229,6 @@ def test_rigid_part_strains_little_and_keeps_little_energy(runs):
     assert len(found) == 1 and found[0].what.startswith('part 2 "block"')
     # Block and plate have equal elements, 24 and 40 columns of 4.
     assert found[0].seconds == pytest.approx(run.seconds_of("elements") * 24.0 / 64.0)
-
-
-def test_dear_type(runs):
-    run = finished.Finished(runs["none"])
-    run.seconds["contact_force"] = 0.3 * run.total
-    assert touching.dear_type(run) == []
-    run.interfaces[0].ctype = 6
-    found = touching.dear_type(run)
-    assert found[0].seconds == pytest.approx(0.20 * run.seconds_of("contact"))
-    run.seconds["contact_force"] = 0.0
-    assert touching.dear_type(run) == []
 
 
 def test_output_written_too_often(runs):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from conftest import ROOT
-from slideline_tools.advise import advise, rubbing, touching
+from slideline_tools.advise import advise, rubbing
 from slideline_tools.histories import History
 
 EXAMPLES = ROOT / "doc/examples"
@@ -86,8 +86,3 @@ def test_friction_that_stops_a_block_is_not_needless(slideline, tmp_path):
     text = (EXAMPLES / "contact_2d_slideline_friction.k").read_text()
     text = re.sub(r"(\*DATABASE_BINARY_D3PLOT\n) *0\.05", r"\1     0.005", text)
     assert {"needless friction", "undamped sliding"}.isdisjoint(run(slideline, tmp_path, text))
-
-
-def test_dear_types_with_friction_are_judged_by_the_study_with_friction():
-    assert set(touching.CHEAPER_WITH_FRICTION) < set(touching.CHEAPER)
-    assert all(saved < touching.CHEAPER[ctype][2] for ctype, (_, _, saved) in touching.CHEAPER_WITH_FRICTION.items())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 
 from slideline_tools import UserError
 from slideline_tools.draw.model import Interface, Model, Part, model_of
@@ -70,6 +71,12 @@ class Finished(Run):
     def is_implicit(self) -> bool:
         """Whether equations were solved."""
         return self.seconds_of("solver") > 0.0
+
+    @property
+    def element_limit(self) -> float:
+        """Smallest L/c of the elements at the start, as the log has it, s; 0 where it has none."""
+        found = re.search(r"smallest L/c of the elements (\S+)", self.log)
+        return float(found[1]) if found else 0.0
 
     @property
     def n_element(self) -> int:

@@ -57,6 +57,7 @@ def as_text(run, advice: list[Advice], notes: list[str], hidden: int) -> str:
     if hidden:
         lines += ["", f"{hidden} more would save less than {SMALLEST_SHARE:.0%} of the run, or "
                   f"less than {SMALLEST_SECONDS} s, each (--all shows them)."]
+    lines += ["", "For contact type and mesh: slideline-tools answer DECK --of QUANTITY --within X% --choose"]
     if notes:
         lines += ["", "Not judged:"] + [f"- {note}" for note in notes]
     return "\n".join(lines)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from slideline_tools.advise import geometry
 from slideline_tools.advise.report import Advice
 from slideline_tools.effective_deck import read_blocks
 
@@ -88,7 +87,7 @@ def is_damped(run, interface) -> bool:
 def undamped_sliding(run) -> list[Advice]:
     """Interfaces that slide, change between stick and slip all the time, and have nothing that damps them."""
     glstat = run.tables.get("glstat")
-    if run.is_implicit or glstat is None or not (limit := geometry.element_limit(run)) > 0.0:
+    if run.is_implicit or glstat is None or not (limit := run.element_limit) > 0.0:
         return []
     if np.any(glstat["damping"]) or np.any(glstat["viscous"]):
         return []

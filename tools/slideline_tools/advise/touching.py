@@ -15,13 +15,6 @@ STATES_IN_CONTACT = 10
 # Part of the run before the first contact that is called a long flight, and the change of energy
 # (over the largest kinetic energy) that a free flight may show.
 LONG_FLIGHT, FREE_FLIGHT = 0.05, 1.0e-9
-# Part of contact time from which the type matters, and the type that passes the patch test and costs
-# less, with what it saves (doc/studies/speed_accuracy.md: contact times, means over all scenes).
-CONTACT_MATTERS = 0.15
-CHEAPER = {6: (5, "NTS-mAR", 0.20), 7: (5, "NTS-mAR", 0.34)}
-# The same with friction (the same page: ironing): type 6 costs what type 5 does.
-CHEAPER_WITH_FRICTION = {7: (5, "NTS-mAR", 0.20)}
-
 # Nodes of an interface are moved one by one: they take so much of the phase `nodes` at least.
 INTERFACE_NODES = 0.5
 
@@ -190,36 +183,4 @@ def flights(run, time: float) -> list[str]:
     return moves
 
 
-def dear_type(run) -> list[Advice]:
-    """Types 6 and 7 where contact is a large share of the run."""
-    dear = [(one, found) for one in run.interfaces
-            if (found := (CHEAPER_WITH_FRICTION if one.friction else CHEAPER).get(one.ctype))]
-    contact = run.seconds_of("contact")
-    if run.is_implicit or contact < CONTACT_MATTERS * run.total:
-        return []
-    advice = []
-    for interface, (number, name, saved) in dear:
-        advice.append(Advice(
-            "dear type", f"{interface.described} takes much of the run; {name} (type {number}) passes "
-            "the patch test and usually costs less.",
-            f"contact takes {contact / run.total:.0%} of the run{judged(run, interface.id)}", f"CTYPE {number} on interface "
-            f"{interface.id} (command line: ctype.{interface.id}={number}), where the resultants "
-            "matter more than a smooth pressure; compare both once",
-            contact_seconds(run, interface) * saved,
-            "mean over the scenes of doc/studies/speed_accuracy.md, which differ"
-            + (", and where the forces of ironing are rougher with it" if interface.friction else "")))
-    return advice
-
-
-def judged(run, number: int) -> str:
-    """What an interface tells of its own answer, where sleout was written."""
-    if (table := run.tables.get("sleout")) is None or "estimate" not in table:
-        return ""
-    rows = table.where(interface=number)
-    if not len(rows) or not np.any(rows["estimate"]):
-        return ""
-    at = int(np.argmax(rows["stored"]))
-    return f"; pressure and the stress behind it differ by {rows['estimate'][at]:.1%} where its springs store most"
-
-
-CHECKS = (never_touched, touched_for_a_while, long_surface, long_flight, dear_type)
+CHECKS = (never_touched, touched_for_a_while, long_surface, long_flight)

@@ -17,12 +17,14 @@ from slideline_tools.effective_deck import Block, read_blocks
 
 #: largest turn between two segments of a curve (METHODS, arcs of contact surfaces)
 SMOOTH = np.radians(16.0)
+#: the same where two such turns that follow each other are alike to so much of them: facets of a circle
+FACETS, ALIKE = np.radians(25.0), 0.1
 #: ratio of curvatures below which an end is straight, and of turns below which a line meets the arc there
 FLAT, TANGENT = 0.1, 0.75
 #: keywords that a finer mesh leaves as they are, by their beginnings
 UNCHANGED = ("KEYWORD", "TITLE", "END", "COMMENT", "CONTROL_", "DEFINE_", "DATABASE_", "PART", "SECTION_", "MAT_", "EOS_", "HOURGLASS",
              "DAMPING_", "INITIAL_VELOCITY", "SET_PART", "SET_2D_SEGMENT", "LOAD_BODY", "LOAD_SEGMENT_SET", "LOAD_RIGID_BODY",
-             "BOUNDARY_PRESCRIBED_MOTION_SET", "BOUNDARY_PRESCRIBED_MOTION_RIGID", "BOUNDARY_SPC_SET", "CONTACT_2D_", "RIGIDWALL_PLANAR",
+             "BOUNDARY_PRESCRIBED_MOTION_SET", "BOUNDARY_PRESCRIBED_MOTION_RIGID", "BOUNDARY_SPC_", "CONTACT_2D_", "RIGIDWALL_PLANAR",
              "TERMINATION_", "CONSTRAINED_NODE_SET", "ELEMENT_MASS")
 #: keywords among these that a finer mesh would change
 REFUSED = ("ELEMENT_MASS_NODE_SET", "DEFINE_COORDINATE_NODES")
@@ -160,8 +162,13 @@ class Mesh:
             turns[node] = np.arctan2(cross, p @ q)
             curvatures[node] = 2.0 * cross / (lengths * np.linalg.norm(p + q)) if abs(turns[node]) < np.pi - 1e-6 else 0.0
 
+        def is_smooth(node):
+            turn = turns.get(node, np.pi)
+            return abs(turn) <= SMOOTH or abs(turn) <= FACETS and any(abs(turns.get(other, np.pi) - turn) < ALIKE * abs(turn)
+                                                                     for other in (before[node], after[node]))
+
         def curvature(a, b):
-            ends = [curvatures[node] for node in (a, b) if abs(turns.get(node, np.pi)) <= SMOOTH]
+            ends = [curvatures[node] for node in (a, b) if is_smooth(node)]
             if not ends or min(ends) * max(ends) < 0.0 or min(map(abs, ends)) < FLAT * max(map(abs, ends)):
                 return 0.0
             if all(node in turns for node in (before.get(a), after.get(b))):  # a line between two arcs
@@ -340,10 +347,6 @@ class Division:
         return [block.head, *block.lines, *(",".join([str(node), *fields]) for fields, nodes in alike.items()
                                             for node in self.mesh.new_in(nodes))]
 
-    def supports(self, block):
-        """*BOUNDARY_SPC_NODE as it is; `further` has the new nodes."""
-        return [block.head, *block.lines]
-
     def nodal_velocities(self, block):
         """*INITIAL_VELOCITY_NODE, interpolated."""
         given = {whole(fields[0]): [real(text) for text in (fields + [""] * 2)[1:3]]
@@ -442,7 +445,7 @@ def rows_of(numbers) -> list[str]:
 HANDLED = {"NODE": Division.node, "ELEMENT_SHELL": Division.elements, "LOAD_SEGMENT": Division.pressures,
            **dict.fromkeys(("SET_SEGMENT", "SET_SEGMENT_TITLE", "SET_SEGMENT_GENERAL", "SET_SEGMENT_GENERAL_TITLE"), Division.segments),
            **dict.fromkeys(("LOAD_NODE_POINT", "LOAD_NODE_SET"), Division.gather_loads),
-           "BOUNDARY_PRESCRIBED_MOTION_NODE": Division.prescribed, "BOUNDARY_SPC_NODE": Division.supports,
+           "BOUNDARY_PRESCRIBED_MOTION_NODE": Division.prescribed,
            "INITIAL_VELOCITY_NODE": Division.nodal_velocities,
            **dict.fromkeys((f"SET_SHELL_LIST{generate}{title}" for generate in ("", "_GENERATE") for title in ("", "_TITLE")), Division.shells),
            "CONTROL_TIMESTEP": Division.step, "CONTROL_IMPLICIT_GENERAL": Division.implicit_step}

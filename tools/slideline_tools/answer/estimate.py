@@ -9,7 +9,7 @@ import numpy as np
 
 ORDERS = (0.5, 2.0)        # of the fit
 SAFETY = 1.25              # on what the finest mesh differs from the limit
-SAFETY_OF_TWO = 3.0        # on the difference of two meshes, whose order is not known (Roache)
+UNSURE = 3.0               # the same at the upper bound of the order, and on the difference of two meshes
 SURE = 0.75                # least order by which meshes are predicted
 AT_BOUND = 1e-6            # distance of an order from a bound that counts as none
 LAST = 3                   # meshes that must go one way
@@ -42,7 +42,7 @@ class Estimate:
         if self.order is None:  # as if the range fell with the size of the elements
             return finest * self.uncertainty / target if target > 0.0 else None
         left = target - 2.0 * self.scatter
-        return (SAFETY * abs(self.change) / left) ** (1.0 / self.order) if left > 0.0 else None
+        return (safety(self.order) * abs(self.change) / left) ** (1.0 / self.order) if left > 0.0 else None
 
 
 def estimate(factors, values) -> Estimate:
@@ -52,12 +52,18 @@ def estimate(factors, values) -> Estimate:
     if len(f) == 1:
         return Estimate(f[0], np.inf)
     if len(f) < LAST:
-        return Estimate(f[-1], SAFETY_OF_TWO * abs(float(steps[0])))
+        return Estimate(f[-1], UNSURE * abs(float(steps[0])))
     if not (np.all(steps > 0.0) or np.all(steps < 0.0)):
         spread = float(np.ptp(f[-LAST:]))
         return Estimate(float(f[-1]), spread, scatter=0.5 * spread)
     order, (limit, change), scatter = fit(h, f)
-    return Estimate(limit, SAFETY * abs(f[-1] - limit) + 2.0 * scatter, order, change, scatter)
+    return Estimate(limit, safety(order) * float(abs(f[-1] - limit)) + 2.0 * scatter, order, change, scatter)
+
+
+def safety(order: float) -> float:
+    """The factor on what the finest mesh differs from the limit: values that settle faster than the highest order are not yet on
+    their way there."""
+    return SAFETY if order < ORDERS[1] - AT_BOUND else UNSURE
 
 
 def fit(h, f):

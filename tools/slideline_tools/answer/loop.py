@@ -52,22 +52,21 @@ class Answers:
         return sum(run.seconds for run in self.runs)
 
 
-def find(meshes: Meshes, quantities: typing.Sequence[Quantity], within: float | None, budget: float | None,
-         tell: typing.Callable[[str], None] = lambda line: None) -> Answers:
-    """Run until all `quantities` are known to the share `within`, or for `budget` seconds; `tell` gets the progress."""
+def find(meshes: Meshes, quantities: typing.Sequence[Quantity], within: float | None, budget: float | None) -> Answers:
+    """Run until all `quantities` are known to the share `within`, or for `budget` seconds."""
     runs: list[MeshRun] = []
     spent, limit = 0.0, budget if budget is not None else BUDGET
     factor, reason = FIRST[0], ""
     while factor:
         expected = seconds_of(runs, factor)
-        tell(f"mesh {factor}" + (f": about {expected:.2g} s" if runs else ""))
+        meshes.tell(f"mesh {factor}" + (f": about {expected:.2g} s" if runs else ""))
         run = meshes.run(factor)
         if runs and run.elements <= runs[-1].elements:
             raise UserError(f"{meshes.deck}: with {meshes.parameter} = {factor} the mesh stays as it is ({counted(run.elements, 'element')})")
         values = [quantity.of(run.outcome) for quantity in quantities]
         runs.append(run)
         spent += 0.0 if run.kept else run.seconds
-        tell(f"mesh {factor}: {counted(run.elements, 'element')}, {run.updates:.3g} updates, "
+        meshes.tell(f"mesh {factor}: {counted(run.elements, 'element')}, {run.updates:.3g} updates, "
              + (f"kept, took {run.seconds:.2g} s" if run.kept else f"{run.seconds:.2g} s") + "; "
              + ", ".join(f"{value:.6g}" for value in values))
         found = judged(quantities, runs, within)

@@ -2,20 +2,25 @@
 """Runs of a deck on finer and finer meshes, kept in a folder and taken up again."""
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import hashlib
 import json
 import pathlib
+import re
 import subprocess
+import threading
+import time
 import typing
 
 from slideline_tools import UserError
 from slideline_tools.answer.divide import divided
 from slideline_tools.draw.model import check_deck
-from slideline_tools.histories import read_csv
-from slideline_tools.program import Outcome, find_program, run
+from slideline_tools.effective_deck import read_blocks
+from slideline_tools.program import Outcome, not_run, run
 
 RECORD = "answer_run.json"
+EVERY = 5.0  # seconds between two lines of progress
 
 
 @dataclasses.dataclass(frozen=True)
@@ -38,6 +43,7 @@ class Meshes:
     `folder`      of the runs, one below it for each mesh
     `parameter`   of the deck, or in its name, that makes the mesh; '' where the mesh is divided
     `parameters`  of all runs, as for `program.run`
+    `tell`        gets the progress of long runs
     """
 
     deck: pathlib.Path
@@ -46,6 +52,7 @@ class Meshes:
     threads: int = 1
     parameter: str = ""
     parameters: dict[str, typing.Any] = dataclasses.field(default_factory=dict)
+    tell: typing.Callable[[str], None] = lambda line: None
     _sets: dict[int, list[int]] | None = None
 
     @property
@@ -60,7 +67,8 @@ class Meshes:
         mark = self.mark(deck, parameters)
         if (kept := self.record(folder, deck, parameters, mark)) is not None:
             return kept
-        outcome = run(deck, folder, program=self.program, threads=self.threads, **parameters)
+        with followed(folder / "status.out", self.tell):
+            outcome = run(deck, folder, program=self.program, threads=self.threads, **parameters)
         cycles = int(outcome.history("glstat")["cycle"][-1])
         elements = count_elements(folder / f"{outcome.job}.effective.k")
         timing = outcome.history("timing")
@@ -111,16 +119,33 @@ class Meshes:
                        Outcome(folder, deck.stem, dict(parameters), 0, ""), True)
 
 
+@contextlib.contextmanager
+def followed(status: pathlib.Path, tell):
+    """Tell every five seconds what the status file of a run says of the time to go."""
+    ended, start = threading.Event(), time.time()
+
+    def follow():
+        while not ended.wait(EVERY):
+            if status.exists() and status.stat().st_mtime >= start:
+                if found := re.search(r"time to complete\s+(\S+)", status.read_text(encoding="utf-8", errors="replace")):
+                    tell(f"  {found[1]} to go")
+    watch = threading.Thread(target=follow, daemon=True)
+    watch.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        watch.join()
+
+
 def version(program: str) -> bytes:
     """What the program says of itself."""
     try:
         return subprocess.run([program, "--version"], capture_output=True, check=False).stdout
     except OSError as problem:
-        from slideline_tools.program import not_run
         raise UserError(not_run(program, problem)) from problem
 
 
 def count_elements(deck: pathlib.Path) -> int:
     """Elements of an effective deck."""
-    from slideline_tools.effective_deck import read_blocks
     return sum(len(block.lines) for block in read_blocks(deck.read_text(encoding="utf-8"), "ELEMENT_SHELL"))

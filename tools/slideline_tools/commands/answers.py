@@ -74,7 +74,8 @@ def found_of(options) -> int:
         meshes.folder = folder / f"type_{ctype}" if ctype else folder
         meshes.parameters = {"ctype": ctype} if ctype else {}
         before = f"type {ctype}, " if ctype else ""
-        found = find(meshes, quantities, within, seconds, lambda line: print(before + line, file=sys.stderr, flush=True))
+        meshes.tell = lambda line: print(before + line, file=sys.stderr, flush=True)
+        found = find(meshes, quantities, within, seconds)
         found.contact_type = ctype
         return found
     tried = []

@@ -44,6 +44,7 @@ def study(quoted, name, module, sources=CONTACT):
 
 PAGES = {  # quick ones first; `chooses` reads what `speed_accuracy` wrote
     "estimates": study("choosing", "estimates", "estimates"),
+    "uncertainty": study("uncertainty", "uncertainty", "uncertainty"),
     "round": study("speed_accuracy", "round", "round"),
     "paper": study("paper", "paper", "paper.study"),
     "stability": study("stability", "stability", "stability.study"),
