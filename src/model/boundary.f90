@@ -26,7 +26,7 @@ contains
     logical, intent(in) :: chosen(:)           !! (n)
     logical, intent(in) :: among(:)            !! (n_node)
     type(boundary_t), intent(out) :: boundary
-    integer, allocatable, intent(in) :: hanging(:, :) !! (3, n) as in mesh_t, nodes 0: not there
+    integer, intent(in), optional :: hanging(:, :) !! (3, n) as in mesh_t, nodes 0: not there
     integer, allocatable :: latest(:)   !! (n_node) last edge so far with this lower node
     integer, allocatable :: before(:)   !! previous edge with the same lower node, 0: none
     logical, allocatable :: is_outer(:) !! by edge: 4 (element - 1) + first corner
@@ -49,7 +49,7 @@ contains
       before(edge) = latest(node)
       latest(node) = edge
     end do
-    if (allocated(hanging)) then
+    if (present(hanging)) then
       do i = 1, size(hanging, 2)
         if (any(hanging(:, i) < 1)) cycle
         halves = [edge_between(hanging(1, i), hanging(2, i)), edge_between(hanging(1, i), &
