@@ -366,7 +366,7 @@ def test_what_is_not_reached_is_written_all_the_same(deck, tmp_path, tool, plain
 def test_bad_requests_are_refused(deck, tmp_path, tool):
     for words, text in ((("--within", "2"), "percentage"), (("--within", "0%"), "percentage"), (("--within", "-2%"), "expected one argument"), 
                         ((), "--within X% or --seconds N"),
-                        (("--seconds", "0"), "more than 0"), (("--within", "2%", "--adapt"), "--adapt"), (("--seconds", "9", "--ncpu", "0"), "1 or more"),
+                        (("--seconds", "0"), "more than 0"), (("--within", "2%", "--adapt", "--mesh-parameter", "level"), "--adapt"), (("--seconds", "9", "--ncpu", "0"), "1 or more"),
                         (("--within", "2%", "--mesh-parameter", "level"), "no such parameter")):
         done = tool("answer", deck, "--of", QUANTITY, *words, "--folder", tmp_path / "out")
         assert done.returncode == 1 and text in done.stderr, done.stderr
@@ -394,6 +394,24 @@ def test_decks_of_a_generator(tmp_path, tool, plain_pictures):
                 "--within", "99%", "--folder", tmp_path / "out", "--json")
     assert done.returncode == 0, done.stderr
     assert [run["elements"] for run in json.loads(done.stdout)["runs"]] == [32, 128, 288]
+
+
+@PROGRAM
+def test_an_answer_on_meshes_that_are_finer_where_it_pays(deck, tmp_path, tool, plain_pictures):
+    deck.write_text(bar(PULLED + "*DATABASE_BINARY_D3PLOT\n1e-5,\n"), encoding="ascii")
+    words = ("answer", deck, "--of", QUANTITY, "--within", "90%", "--adapt", "--folder", tmp_path / "out", "--json")
+    done = tool(*words)
+    assert done.returncode == 0, done.stderr
+    runs = json.loads(done.stdout)["runs"]
+    assert len(runs) >= 3 and all(a["elements"] < b["elements"] < 4 * a["elements"] + 1 for a, b in zip(runs, runs[1:]))
+    assert [run["mesh"] for run in runs] == pytest.approx([(run["elements"] / 2) ** 0.5 for run in runs], abs=1e-3)
+    assert tool(*words).stderr.count("kept") == len(runs)
+
+
+@PROGRAM
+def test_adapted_meshes_need_states(deck, tmp_path, tool):
+    done = tool("answer", deck, "--of", QUANTITY, "--within", "2%", "--adapt", "--folder", tmp_path / "out")
+    assert done.returncode == 1 and "no results" in done.stderr
 
 
 @PROGRAM

@@ -10,7 +10,7 @@ import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.answer.estimate import Estimate, estimate
-from slideline_tools.answer.meshes import Meshes, MeshRun
+from slideline_tools.answer.meshes import AdaptedMeshes, Meshes, MeshRun
 from slideline_tools.answer.quantity import Quantity
 from slideline_tools.names import counted
 
@@ -58,8 +58,8 @@ def find(meshes: Meshes, quantities: typing.Sequence[Quantity], within: float | 
     spent, limit = 0.0, budget if budget is not None else BUDGET
     factor, reason = FIRST[0], ""
     while factor:
-        expected = seconds_of(runs, factor)
-        meshes.tell(f"mesh {factor}" + (f": about {expected:.2g} s" if runs else ""))
+        about = f": about {seconds_of(runs, factor):.2g} s" if runs and not isinstance(meshes, AdaptedMeshes) else ""
+        meshes.tell(f"mesh {factor}{about}")
         run = meshes.run(factor)
         if runs and run.elements <= runs[-1].elements:
             raise UserError(f"{meshes.deck}: with {meshes.parameter} = {factor} the mesh stays as it is ({counted(run.elements, 'element')})")
@@ -70,7 +70,8 @@ def find(meshes: Meshes, quantities: typing.Sequence[Quantity], within: float | 
              + (f"kept, took {run.seconds:.2g} s" if run.kept else f"{run.seconds:.2g} s") + "; "
              + ", ".join(f"{value:.6g}" for value in values))
         found = judged(quantities, runs, within)
-        factor, reason = following(found, runs, within, limit - spent)
+        further = following_adapted if isinstance(meshes, AdaptedMeshes) else following
+        factor, reason = further(found, runs, within, limit - spent)
     for one in found.answers:
         one.reason = reason_of(one, within) if one.within else reason or reason_of(one, within)
     return found
@@ -111,6 +112,17 @@ def following(found: Answers, runs, within, left) -> tuple[int, str]:
         return step, ""
     return 0, (f"{'perhaps ' * unsure}mesh {target} would do, in about {needs:.2g} s "
                f"({runs[-1].updates * (target / last) ** EXPLICIT:.2g} element updates); {max(left, 0.0):.2g} s are left (--seconds)")
+
+
+def following_adapted(found: Answers, runs, within, left) -> tuple[int, str]:
+    """The number of the next run on a mesh that is finer where it pays, 0 for none, and why there is none."""
+    if len(runs) >= FIRST[-1] and within is not None and all(one.within for one in found.answers):
+        return 0, ""
+    growth = max(runs[-1].seconds / runs[-2].seconds, 1.0) if len(runs) > 1 else EXPLICIT
+    needs = growth * runs[-1].seconds
+    if needs > left:
+        return 0, f"the budget ends: the next mesh takes about {needs:.2g} s, {max(left, 0.0):.2g} s are left (--seconds)"
+    return len(runs) + 1, ""
 
 
 def reason_of(one: Answer, within) -> str:

@@ -17,9 +17,11 @@ from slideline_tools import UserError
 from slideline_tools.answer.divide import divided
 from slideline_tools.draw.model import check_deck
 from slideline_tools.effective_deck import read_blocks
+from slideline_tools.finished_run import Run
 from slideline_tools.program import Outcome, not_run, run
 
 RECORD = "answer_run.json"
+SHARE = 0.3  # of the whole error, in the elements that are divided
 EVERY = 5.0  # seconds between two lines of progress
 
 
@@ -27,7 +29,7 @@ EVERY = 5.0  # seconds between two lines of progress
 class MeshRun:
     """A finished run: the factor of its mesh, its elements, element updates (elements times cycles) and seconds."""
 
-    mesh: int
+    mesh: float
     elements: int
     updates: int
     seconds: float
@@ -136,6 +138,33 @@ def followed(status: pathlib.Path, tell):
     finally:
         ended.set()
         watch.join()
+
+
+class AdaptedMeshes(Meshes):
+    """Meshes each of which is the one before, finer where its error is large and along contact surfaces; their factor is that
+    of the divided mesh with as many elements."""
+
+    def run(self, factor: int) -> MeshRun:
+        """Run number `factor` of the deck."""
+        found = super().run(factor)
+        if factor == 1:
+            self.first = found.elements
+        return dataclasses.replace(found, mesh=round((found.elements / self.first) ** 0.5, 3))
+
+    def deck_of(self, factor: int) -> tuple[pathlib.Path, dict[str, typing.Any]]:
+        """The deck with its error as a field, or that of the run before refined."""
+        from slideline_tools.answer.refine import refine_run
+        path = self.folder / f"mesh_{factor}" / f"{self.deck.stem}.k"
+        if factor == 1:
+            if not self.deck.is_file():
+                raise UserError(f"{self.deck}: no such file")
+            text = f"*KEYWORD\n*INCLUDE\n{self.deck.resolve()}\n*DATABASE_ERROR_INDICATOR\n*END\n"
+        else:
+            before = Run(self.folder / f"mesh_{factor - 1}" / f"{self.deck.stem}.effective.k")
+            text = refine_run(before, self.program, SHARE, surfaces=True)[0]
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return path, self.parameters if factor == 1 else {}
 
 
 def version(program: str) -> bytes:

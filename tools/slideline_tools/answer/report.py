@@ -28,7 +28,7 @@ def table(found: Answers) -> str:
         lines += [f"{one.quantity.text} = {plus_minus(one)}", f"  {one.reason}"]
     heads = ["mesh", "elements", "updates", "seconds", *(f"value {k}" if len(found.answers) > 1 else "value"
                                                          for k in range(1, len(found.answers) + 1))]
-    rows = [[str(run.mesh), str(run.elements), f"{run.updates:.3g}", f"{run.seconds:.2g}",
+    rows = [[f"{run.mesh:g}", str(run.elements), f"{run.updates:.3g}", f"{run.seconds:.2g}",
              *(f"{one.values[k]:.6g}" for one in found.answers)] for k, run in enumerate(found.runs)]
     widths = [max(map(len, column)) for column in zip(heads, *rows)]
     return "\n".join(lines + ["  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in (heads, *rows)])
@@ -75,7 +75,7 @@ def chart(found: Answers, path) -> None:
         for axes, one in zip(panels[:, 0], found.answers):
             axes.plot(updates, one.values, "o-", color=COLOURS[0], label="runs")
             for run, x, y in zip(found.runs, updates, one.values):
-                axes.annotate(f"mesh {run.mesh}", (x, y), (4, 4), textcoords="offset points", fontsize=7)
+                axes.annotate(f"mesh {run.mesh:g}", (x, y), (4, 4), textcoords="offset points", fontsize=7)
             bar = one.estimate.uncertainty if math.isfinite(one.estimate.uncertainty) else 0.0
             axes.errorbar([updates[-1] * 2.0], [one.estimate.value], [bar], fmt="s", capsize=4, color=COLOURS[1],
                           label=f"answer {plus_minus(one)}")

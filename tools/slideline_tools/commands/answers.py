@@ -60,15 +60,15 @@ def found_of(options) -> int:
     """Find the answer, write and print it; UserError where that cannot be."""
     from slideline_tools.answer import report
     from slideline_tools.answer.loop import find
-    from slideline_tools.answer.meshes import Meshes
+    from slideline_tools.answer.meshes import AdaptedMeshes, Meshes
     from slideline_tools.answer.quantity import parse
     from slideline_tools.program import find_program
     within = share_of(options.within) if options.within is not None else None
     check(options, within)
     quantities = [parse(text) for text in options.of]
     deck = pathlib.Path(options.deck)
-    meshes = Meshes(deck, pathlib.Path(), find_program(options.program), options.ncpu, options.mesh_parameter or "")
-    folder = pathlib.Path(options.folder or f"results/{meshes.name}-answer")
+    meshes = (AdaptedMeshes if options.adapt else Meshes)(deck, pathlib.Path(), find_program(options.program), options.ncpu, options.mesh_parameter or "")
+    folder = pathlib.Path(options.folder or f"results/{meshes.name}-answer{'-adapt' * options.adapt}")
 
     def loop(ctype, seconds):
         meshes.folder = folder / f"type_{ctype}" if ctype else folder
@@ -117,8 +117,8 @@ def chosen(loop, tried: list, seconds):
 
 def check(options, within) -> None:
     """Refuse what cannot be asked for."""
-    if options.adapt:
-        raise UserError("--adapt is not there yet: the mesh is divided everywhere (--within, --seconds)")
+    if options.adapt and options.mesh_parameter:
+        raise UserError("--adapt refines the mesh of the deck: it goes with no --mesh-parameter")
     if within is None and options.seconds is None:
         raise UserError("how well, or for how long? --within X% or --seconds N")
     if options.seconds is not None and not 0.0 < options.seconds < math.inf:
