@@ -61,6 +61,6 @@ def test_old_processor_is_reported(start):
     assert "no build" in done.stderr
 
 
-def test_processor_that_cannot_be_told_is_reported(start, tmp_path):
+def test_unknown_processor_is_reported(start, tmp_path):
     done = start(ZEN_2, SLIDELINE_CPUINFO=str(tmp_path / "nowhere"))
     assert done.returncode == 1 and done.stderr == f"slideline: cannot read {tmp_path / 'nowhere'}, which says what this processor can run\n"
