@@ -13,6 +13,7 @@ module run_m
   use deck_restart_m, only : merge_decks, is_whole_deck, deck_identity
   use deck_reader_m, only : read_file
   use errors_m, only : error_t, raise, status_input, status_stopped
+  use dynain_m, only : write_dynain
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
   use files_m, only : make_directory, remove_file, join_path, unfinished
@@ -383,6 +384,12 @@ contains
     if (stopped) reason = reason//' (exit status '//to_text(status_stopped)//') before the ' &
       //'termination time '//to_text(model%controls%end_time)
     if (monitor%ranks%mine == 0) then
+      if (model%springback%is_on .and. .not. (stopped .or. allocated(error) .or. &
+        model%controls%check_only)) then
+        call write_dynain(model, state, monitor%restarts%prefix//'.dynain', error)
+        call write_log(monitor%log, 'state for the next stage: '//monitor%restarts%prefix &
+          //'.dynain')
+      end if
       call finish_monitor(monitor, closing_error)
       if (.not. allocated(error) .and. allocated(closing_error)) &
         call move_alloc(closing_error, error)

@@ -29,6 +29,7 @@ module deck_m
   use deck_plane_stress_m, only : set_plane_stress
   use deck_sections_m, only : read_cross_sections
   use deck_sets_m, only : read_sets, read_histories
+  use deck_stage_m, only : read_stage, read_springback
   use deck_supports_m, only : read_supports, read_motions, read_common_motions
   use deck_velocity_m, only : read_velocities
   use deck_transforms_m, only : read_transforms
@@ -169,7 +170,9 @@ contains
     call set_plane_stress(deck, model)
     call read_mesh(deck, model, codes, is_sound, body%is_sound)
     call read_hanging_nodes(deck, model, hanging_lines)
+    call read_stage(deck, model)
     call read_sets(deck, model, body%is_whole)
+    call read_springback(deck, model)
     call read_histories(deck, model)
     call read_cross_sections(deck, model)
     if (model%controls%implicit%is_on) call check_implicit(deck, model)

@@ -5,6 +5,7 @@ module element_start_m
   use element_chunk_m, only : n_axisym_reference, reference_inverse, reference_mass, reference_sum
   use element_dispatch_m, only : point_count
   use element_mass_m, only : node_volumes
+  use element_stage_m, only : set_stage
   use element_state_m, only : start_erosion
   use eos_pressure_m, only : n_eos_value
   use kinds_m, only : wp
@@ -61,6 +62,7 @@ contains
         call clear_memories(model, (first - 1)/chunk_size + 1, last/chunk_size, elements)
       end associate
     end do
+    call set_stage(model, known, elements)
     if (model%erodes) call start_erosion(model, elements)
   end subroutine start_elements
 

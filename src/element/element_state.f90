@@ -17,7 +17,7 @@ module element_state_m
   private
   public :: start_erosion, update_erosion, is_eroded, stress_of_slot, plastic_strain_of_slot, &
     find_heat, hoop_strain_of_slot, thickness_strain_of_slot, initial_volume, smallest_ratio, &
-    add_part_energies, count_points, first_failed
+    add_part_energies, count_points, first_failed, volume_ratios, point_stretches
 
 contains
 
@@ -99,7 +99,10 @@ contains
       call volume_ratios(model, motion, elements, slot, n, stretch, start)
       if (material%is_rigid) stretch = 0.0_wp
       now(:n) = start(:n)*(1.0_wp + stretch(:n))
-      volumetric = material%bulk*(sum(now(:n)*log_ratio(stretch(:n)))/sum(now(:n)))
+      stretch(:n) = log_ratio(stretch(:n))
+      if (allocated(elements%start_dilatation) .and. .not. material%is_rigid) stretch(:n) = &
+        stretch(:n) + elements%start_dilatation(slot, :n)
+      volumetric = material%bulk*(sum(now(:n)*stretch(:n))/sum(now(:n)))
     end associate
     i_eos = elements%eos_start((slot - 1)/chunk_size + 1)
     if (i_eos > 0) volumetric = -elements%eos_state(i_eos + chunk_size + mod(slot - 1, chunk_size))
@@ -154,7 +157,7 @@ contains
       value = elements%history(first)
       return
     end if
-    call ratios_of_points(elements, slot, none, stretch, start)
+    call point_stretches(elements, slot, none, stretch, start)
     associate (part => model%parts(model%layout%chunk_part(i_chunk)))
       stride = chunk_size*history_size(model%materials(part%material))
     end associate
@@ -183,7 +186,7 @@ contains
       end if
       u = motion(1:2, nodes)
       if (n > 1 .or. model%is_axisymmetric) then
-        call ratios_of_points(elements, slot, u, stretch, start)
+        call point_stretches(elements, slot, u, stretch, start)
         if (n > 1) return
         ! 2x2 points integrate the volume exactly.
         stretch(1) = sum(start*stretch)/sum(start)
@@ -208,7 +211,7 @@ contains
     real(wp), parameter :: none(2, 4) = 0.0_wp
 
     if (model%is_axisymmetric) then
-      call ratios_of_points(elements, slot, none, stretch, start)
+      call point_stretches(elements, slot, none, stretch, start)
       volume = sum(start)
     else
       associate (r => elements%reference(slot, :4))
@@ -257,7 +260,7 @@ contains
   end function thickness_strain_of_slot
 
   !> J - 1 at the points of the element in a slot, and the initial area or volume of each.
-  pure subroutine ratios_of_points(elements, slot, u, stretch, start)
+  pure subroutine point_stretches(elements, slot, u, stretch, start)
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: slot
     real(wp), intent(in) :: u(2, 4)            !! displacement of the nodes
@@ -268,7 +271,7 @@ contains
     if (size(elements%reference, 2) > 6) reference(reference_sum) = elements%reference(slot, &
       reference_sum)
     call point_ratios(size(elements%reference, 2) > 6, reference, u, stretch, start)
-  end subroutine ratios_of_points
+  end subroutine point_stretches
 
   !> Smallest J of the element in a slot: of the element, and of its points where it has several.
   pure function smallest_ratio(model, motion, elements, slot) result(smallest)
@@ -284,7 +287,7 @@ contains
     if (elements%point_start((slot - 1)/chunk_size + 1) > 0) then
       n = n_point
       u = motion(1:2, model%layout%slot_nodes(:, slot))
-      call ratios_of_points(elements, slot, u, stretch, start)
+      call point_stretches(elements, slot, u, stretch, start)
     end if
     smallest = 1.0_wp + minval(stretch(:n))
   end function smallest_ratio
@@ -317,6 +320,8 @@ contains
           else
             internal(part) = internal(part) + sum(start(:n)*volumetric_energy(material%bulk, &
               stretch(:n)))
+            if (allocated(elements%start_dilatation)) internal(part) = internal(part) &
+              + material%bulk*sum(start(:n)*elements%start_dilatation(slot, :n)*stretch(:n))
           end if
         end associate
       end do

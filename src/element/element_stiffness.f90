@@ -17,6 +17,7 @@ module element_stiffness_m
   use plane_stress_m, only : thinning_start
   use quad_points_m, only : n_point
   use sparse_m, only : sparse_t, add_block
+  use stress_chunk_m, only : stress_point_t
   implicit none
   private
   public :: add_stiffness
@@ -66,6 +67,8 @@ contains
             call set_pattern_values(element%x + element%u - 0.5_wp*du, element%middle)
             call set_pattern_values(du, element%change)
             call load_points(i_chunk, mod(slot - 1, chunk_size), material, committed, element)
+            if (allocated(committed%start_dilatation) .and. .not. any(abs(du) > 0.0_wp)) &
+              call move_inside(element%points)
             call form_block(material, part%hourglass, committed%point_start(i_chunk) > 0, element, &
               block)
             call add_block(matrix, equations, equations, &
@@ -75,6 +78,18 @@ contains
       end associate
     end do
   end subroutine add_stiffness
+
+  !> Move points just inside their yield surface, for the elastic tangent: a stage begins with
+  !> unloading (springback), for which the plastic tangent of all points at once is singular.
+  pure subroutine move_inside(points)
+    type(stress_point_t), intent(inout) :: points(n_point)
+    real(wp), parameter :: inside = 1.0_wp - 1.0e-6_wp
+    integer :: k
+
+    do k = 1, n_point
+      points(k)%old = points(k)%back + inside*(points(k)%old - points(k)%back)
+    end do
+  end subroutine move_inside
 
   !> Load the state of the points of one element, and its hourglass stress, from the streams.
   pure subroutine load_points(i_chunk, place, material, elements, element)
@@ -89,6 +104,9 @@ contains
 
     n_history = history_size(material)
     n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
+    element%dilatation = 0.0_wp
+    if (allocated(elements%start_dilatation)) element%dilatation = &
+      elements%start_dilatation((i_chunk - 1)*chunk_size + place + 1, :)
     first = elements%hourglass_start(i_chunk) + place
     if (n == 1) element%pattern_stress = elements%hourglass_strain([first, first + chunk_size])
     do k = 1, n
@@ -169,10 +187,11 @@ contains
       call form_integrals(element%is_axisymmetric, now, over)
       if (material%is_plane_stress) then
         call find_sheet_stress(material, 1, gradient, pressure_of(material%bulk, &
-          sum(start_volumes(element)), over%volume), element, stress, cosine)
+          element%dilatation(1), sum(start_volumes(element)), over%volume), element, stress, cosine)
       else
         call find_stress(material, gradient, hoop, pressure_of(material%bulk, &
-          sum(start_volumes(element)), over%volume), element%points(1), stress, cosine)
+          element%dilatation(1), sum(start_volumes(element)), over%volume), element%points(1), &
+          stress, cosine)
       end if
       call find_resistance(material, hourglass, element, growth, cosine, q)
       ! The mean radius, and what h contributes to a and b in gamma.

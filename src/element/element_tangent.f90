@@ -33,6 +33,7 @@ module element_tangent_m
     real(wp) :: u(2, 4)                 !! displacement
     type(shape_t) :: now, middle, change !! present and mid-step shape, increment in the step
     type(stress_point_t) :: points(n_point) !! at the start of the step
+    real(wp) :: dilatation(n_point)     !! ln(J) of the stage before
     real(wp) :: thinning(n_point)       !! plane stress: t/t0 - 1 at the start of the step
     real(wp) :: pattern_stress(2)       !! of the hourglass, at the start of the step
   end type element_t
@@ -143,10 +144,10 @@ contains
     if (allocated(material%rubber) .and. .not. material%is_plane_stress) then
       call find_rubber_stress(material%rubber, element, start, volumes, volume, stress)
     else
-      pressure = pressure_of(material%bulk, sum(start), volume)
+      pressure = pressure_of(material%bulk, element%dilatation(1), sum(start), volume)
       do k = 1, n_point
         if (material%is_plane_stress .or. .not. has_mean_dilatation(material)) &
-          pressure = pressure_of(material%bulk, start(k), volumes(k))
+          pressure = pressure_of(material%bulk, element%dilatation(k), start(k), volumes(k))
         call find_point_stress(material, k, places(k), element, pressure, stress(:, k))
       end do
     end if
@@ -396,13 +397,13 @@ contains
     end if
   end function volumetric_part
 
-  !> K ln(V/V0).
-  pure function pressure_of(bulk, start, volume) result(pressure)
-    real(wp), intent(in) :: bulk, start
+  !> K ln(V/V0), with ln(J) of the stage before.
+  pure function pressure_of(bulk, dilatation, start, volume) result(pressure)
+    real(wp), intent(in) :: bulk, dilatation, start
     type(dual_t), intent(in) :: volume
     type(dual_t) :: pressure
 
-    pressure%value = bulk*log_ratio((volume%value - start)/start)
+    pressure%value = bulk*(log_ratio((volume%value - start)/start) + dilatation)
     pressure%slope = bulk/volume%value*volume%slope
   end function pressure_of
 

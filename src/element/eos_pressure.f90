@@ -120,6 +120,7 @@ contains
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk     !! pressure out (tension positive)
     type(moduli_t), intent(inout) :: now              !! moduli of the stiffest element out
+    real(wp) :: start(chunk_size)
     logical :: failed(chunk_size), keeps_pressure
     integer :: first
 
@@ -131,7 +132,11 @@ contains
         elements%viscous_work(i_chunk), chunk, now)
     else
       call find_failed_elements(i_chunk, material, elements, failed, keeps_pressure)
-      call form_eos_pressure(material, viscosity, inverse_start, failed, keeps_pressure, &
+      start = 0.0_wp
+      if (allocated(elements%start_dilatation)) start = elements%start_dilatation((i_chunk &
+        - 1)*chunk_size + 1:i_chunk*chunk_size, 1)
+      chunk%heat = chunk%heat*inverse_start
+      call form_eos_pressure(material, viscosity, failed, keeps_pressure, start, &
         elements%eos_state(first), chunk, now)
       call apply_spall(i_chunk, material, elements)
     end if
@@ -194,21 +199,22 @@ contains
 
   !> Energy and pressure at the end of the step, with bulk viscosity, whose work heats; failed
   !> points have none.
-  pure subroutine form_eos_pressure(material, viscosity, inverse_start, failed, keeps_pressure, &
-    values, chunk, now)
+  pure subroutine form_eos_pressure(material, viscosity, failed, keeps_pressure, start, values, &
+    chunk, now)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: viscosity
-    real(wp), intent(in) :: inverse_start(chunk_size)     !! 1/V0
     logical, intent(in) :: failed(chunk_size)             !! all points of an element
     logical, intent(in) :: keeps_pressure                 !! in compression
+    real(wp), intent(in) :: start(chunk_size)             !! ln(V/V0) of the stage before
     real(wp), intent(inout) :: values(chunk_size, n_eos_value)
-    type(element_chunk_t), intent(inout) :: chunk
+    type(element_chunk_t), intent(inout) :: chunk         !! `heat` per initial volume in
     type(moduli_t), intent(inout) :: now
     type(eos_chunk_t) :: state
     real(wp), dimension(chunk_size) :: growth, heat, least, most, q, stiffness
 
     growth = chunk%stretch - values(:, 3)
     call form_eos(material%eos, chunk%stretch, state)
+    state%a = state%a - material%bulk*start
     call form_viscous_pressure(viscosity, material%density, values(:, 5), chunk, q)
     least = -huge(1.0_wp)
     most = huge(1.0_wp)
@@ -221,7 +227,7 @@ contains
       end where
     end if
     ! Work of the viscous forces, which act at both ends of the step.
-    heat = chunk%heat*inverse_start - 0.5_wp*growth*(q + values(:, 4))
+    heat = chunk%heat - 0.5_wp*growth*(q + values(:, 4))
     call advance_energy(state, growth, heat, least, most, values(:, 1), values(:, 2))
     call find_stiffness(state, chunk%stretch, values(:, 1), values(:, 2), stiffness)
     now = moduli_by_eos(material, stiffness, 1.0_wp + chunk%stretch)

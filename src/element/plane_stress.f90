@@ -76,6 +76,8 @@ contains
     search%strain = -((stiffness - 2.0_wp*material%shear)/stiffness)*(stress%dxx + stress%dyy)
     search%slope = stiffness
     search%dilation = log_ratio(point%stretch)
+    if (allocated(elements%start_dilatation)) search%dilation = search%dilation &
+      + elements%start_dilatation((i_chunk - 1)*chunk_size + 1:i_chunk*chunk_size, k)
     search%is_open = .true.
     do iteration = 1, most_iterations
       call set_strain(search%strain, point%stretch, old, start, stress)

@@ -111,6 +111,7 @@ contains
         chunk, now)
     else
       call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
+      call add_start_pressure(i_chunk, 1, material, elements, chunk)
       call add_viscosity(i_chunk, material, hourglass, dt, elements, chunk)
       if (allocated(elements%retardation)) call add_damping(i_chunk, 1, material, .true., &
         elements, chunk, stress)
@@ -218,8 +219,10 @@ contains
       call start_point_values(material, chunk)
       return
     end if
-    if (has_mean_dilatation(material)) &
+    if (has_mean_dilatation(material)) then
       call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
+      call add_start_pressure(i_chunk, 1, material, elements, chunk)
+    end if
     call add_viscosity(i_chunk, material, hourglass, dt, elements, chunk)
     if (is_damped) call add_viscous_pressure(material%bulk, elements%retardation((i_chunk &
       - 1)*chunk_size + 1), chunk%trace, chunk%mid_area, dt, chunk%pressure, &
@@ -264,6 +267,7 @@ contains
       point%pressure = chunk%pressure
     else
       call volumetric_stress(material%bulk, point%stretch, point%pressure)
+      call add_start_pressure(i_chunk, k, material, elements, point)
       point%pressure = point%pressure + chunk%pressure
     end if
     if (allocated(elements%retardation)) call add_damping(i_chunk, k, material, &
@@ -348,6 +352,20 @@ contains
     if (.not. allocated(material%eos)) elements%deviatoric_work(i_chunk) = &
       elements%deviatoric_work(i_chunk) + work_of_deviator(stress%work, point%mid_area)
   end subroutine advance_stress
+
+  !> Add K times ln(J) of the stage before to the pressure of point `k`, or of the element.
+  pure subroutine add_start_pressure(i_chunk, k, material, elements, point)
+    integer, intent(in) :: i_chunk, k
+    type(material_t), intent(in) :: material
+    type(block_state_t), intent(in) :: elements
+    type(element_chunk_t), intent(inout) :: point
+
+    if (.not. allocated(elements%start_dilatation)) return
+    associate (first => (i_chunk - 1)*chunk_size + 1)
+      point%pressure = point%pressure + material%bulk*elements%start_dilatation(first:first &
+        + chunk_size - 1, k)
+    end associate
+  end subroutine add_start_pressure
 
   !> Add bulk viscosity to elements without an equation of state.
   pure subroutine add_viscosity(i_chunk, material, hourglass, dt, elements, chunk)

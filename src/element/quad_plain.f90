@@ -60,7 +60,8 @@ contains
         .not. model%is_axisymmetric .and. hourglass%form == hourglass_viscous &
         .and. .not. hourglass%coefficient > harmless_coefficient &
         .and. .not. (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) &
-        .and. .not. (allocated(elements%retardation) .or. allocated(elements%erosion)) &
+        .and. .not. (allocated(elements%retardation) .or. allocated(elements%erosion) &
+        .or. allocated(elements%start_dilatation)) &
         .and. model%controls%length_rule /= length_by_diagonal
     end associate
   end function is_plain

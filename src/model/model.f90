@@ -14,6 +14,7 @@ module model_m
   use conditions_m, only : conditions_t
   use contacts_m, only : contact_t, transducer_t
   use rigids_m, only : rigid_t
+  use stages_m, only : stage_t, springback_t
   use visitor_m, only : visited_t, visitor_t, length
   use walls_m, only : wall_t
   use controls_m, only : controls_t
@@ -65,6 +66,8 @@ module model_m
     type(transducer_t), allocatable :: transducers(:)
     type(rigid_t), allocatable :: rigids(:)
     type(wall_t), allocatable :: walls(:)
+    type(stage_t) :: stage           !! state of the stage before, until the run has started
+    type(springback_t) :: springback !! the file for the next stage, of the first process
     type(controls_t) :: controls
     logical :: erodes = .false.   !! elements may erode
     logical :: is_axisymmetric = .false. !! axisymmetric: x is the radius, y the axis; forces,
@@ -113,6 +116,7 @@ contains
     call visitor%each('rigids', self%rigids)
     if (visitor%makes(length(self%walls))) allocate (self%walls(visitor%n_item))
     call visitor%each('walls', self%walls)
+    call visitor%part('stage', self%stage)
     call visitor%part('controls', self%controls)
     call visitor%visit('erodes', self%erodes)
     call visitor%visit('is_axisymmetric', self%is_axisymmetric)

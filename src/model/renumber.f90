@@ -11,6 +11,7 @@ module renumber_m
   use model_m, only : model_t, mark_supports
   use rigids_m, only : mark_rigid_nodes
   use sorting_m, only : sorted_order
+  use stages_m, only : stage_t, arrange_stage
   implicit none
   private
   public :: renumber_model, mark_moved_nodes, release_start_data
@@ -50,6 +51,7 @@ contains
     call renumber_conditions(model, order, new_index)
     call renumber_bodies(model, new_index)
     call build_local_numbers(model%mesh, model%layout)
+    call arrange_stage(model%layout%slot_element, model%stage)
     if (.not. model%controls%implicit%is_on) then
       shares = find_exposed(model, [(.true., i=1, model%mesh%n_element)])
       order = pack([(i, i=1, model%mesh%n_element)], any(shares > 0.0_wp, 1))
@@ -71,6 +73,7 @@ contains
 
     if (allocated(model%conditions%initial_velocity)) &
       deallocate (model%conditions%initial_velocity)
+    model%stage = stage_t()
     if (allocated(model%node_sets)) deallocate (model%node_sets)
     if (allocated(model%segment_sets)) deallocate (model%segment_sets)
     if (allocated(model%shell_sets)) deallocate (model%shell_sets)

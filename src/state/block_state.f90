@@ -67,6 +67,12 @@ module block_state_m
     real(wp), allocatable :: viscous_pressure(:) !! (n_slot) bulk viscosity of the last step, Pa;
                                                  !! allocated where a part without equation of state
                                                  !! has it
+    real(wp), allocatable :: start_dilatation(:, :) !! (n_slot, 4) ln(J) of the stage before at each
+                                                    !! point, for the pressure; this and
+                                                    !! start_strain are allocated where the deck has
+                                                    !! initial stresses and strains
+    real(wp), allocatable :: start_strain(:, :) !! (n_slot, 16) strain of the stage before: xx yy zz
+                                                !! xy of each point
     real(wp), allocatable :: mass_ratio(:)      !! (n_slot) scaled mass over the mass from the
                                                 !! density; allocated with mass scaling
     real(wp), allocatable :: retardation(:)     !! (n_slot) stiffness damping: viscosity over
@@ -112,6 +118,8 @@ contains
     call visitor%visit('hourglass_work', self%hourglass_work, of_chunks)
     call visitor%visit('viscous_work', self%viscous_work, of_chunks)
     call visitor%visit('viscous_pressure', self%viscous_pressure, of_slots)
+    call visitor%visit('start_dilatation', self%start_dilatation, fixed_columns)
+    call visitor%visit('start_strain', self%start_strain, fixed_columns)
     call visitor%visit('mass_ratio', self%mass_ratio, fixed_slots)
     call visitor%visit('retardation', self%retardation, fixed_slots)
     call visitor%visit('damping_stress', self%damping_stress, of_stresses)

@@ -33,7 +33,8 @@ EXEMPT = {
     "trial_t": {"motion": "of the step that is over", "elements": "those of the state", "contacts": "those of the state",
                 "slots": "formed with each force", "before": "used up before a file is written"},
     "mesh_t": {"deck_node": "the order of results, which the first process writes"},
-    "model_t": dict.fromkeys(("node_sets", "segment_sets", "part_sets", "shell_sets"), "conditions and surfaces have been made of them"),
+    "model_t": dict.fromkeys(("node_sets", "segment_sets", "part_sets", "shell_sets"), "conditions and surfaces have been made of them")
+    | {"springback": "the first process writes the file of the next stage"},
     "controls_t": {"implicit": "runs of several processes are explicit, its default"},
 }
 #: types of src/state that hold no memory

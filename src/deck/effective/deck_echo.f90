@@ -64,6 +64,8 @@ contains
         //to_text(size(conditions%body_loads))//' body loads')
     end associate
     if (allocated(model%walls)) call echo_walls(model, log)
+    if (allocated(model%stage%stresses)) call write_log(log, 'stresses of the stage before: ' &
+      //to_text(model%stage%n_element)//' elements')
     call write_log(log, 'end time '//to_text(model%controls%end_time)//', time step factor ' &
       //to_text(model%controls%dt_scale))
     call echo_short_curves(model, log)

@@ -78,6 +78,9 @@ module deck_schema_m
     'TC a boundary code (0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)', &
     'ELEMENT_SHELL.EID an element number', &
     'ELEMENT_SHELL.PID,ELEMENT_BEAM.PID a part number', &
+    'NPLANE a number of points (1, or 4 with NIP 4)', &
+    'NTHICK a number of points over the thickness (2D solids have 1)', &
+    'FTYPE a format that this version has (0 or 10, text)', &
     'SID a set number', &
     'RO a density', &
     'E a Young''s modulus', &
@@ -176,6 +179,8 @@ module deck_schema_m
     //'slideline; 0 is the mechanical one', &
     'MODEL asks for another law of foams', &
     'N5,N6,N7,N8 is a mid-side node; elements and edges have corner nodes only here', &
+    'SIGYZ,SIGZX is a shear stress out of the plane', &
+    'NTENSR,NTHINT,NTHHSV asks for tensors or thermal values of points', &
     'BOXID is a box of nodes', &
     'PHASE is a velocity of dynamic relaxation', &
     'IRELAL asks for automatic control of the relaxation, which this version does not have; ' &

@@ -19,6 +19,8 @@ module deck_schema_others_m
     'SET_* this kind of set is', &
     'BOUNDARY_PRESCRIBED_MOTION_RIGID* axes of bodies are', &
     'BOUNDARY_* this condition is', &
+    'INITIAL_AXIAL_FORCE_BEAM* beams with initial forces are', &
+    'INITIAL_STRESS_*,INITIAL_STRAIN_* stresses of such elements or of sets are', &
     'INITIAL_* this initial condition is', &
     'LOAD_BODY_Z loads out of the plane are', &
     'LOAD_BODY_R* spinning frames are', &
@@ -105,7 +107,7 @@ module deck_schema_others_m
     'DATABASE_HISTORY_TSHELL* a history of such elements is', &
     'DATABASE_ACEOUT,DATABASE_PBSTAT,DATABASE_SSSTAT* this output is', &
     'DATABASE_CROSS_SECTION_PLANE* sections cut by a plane (give sets by _SET) are', &
-    'INTERFACE_SPRINGBACK_* the file of a next stage (dynain) is', &
+    'INTERFACE_SPRINGBACK_* this form of the file of a next stage is', &
     'INTERFACE_* a file for another run is', &
     'CASE,CASE_* several runs of one deck are', &
     'DATABASE_* this output is', &

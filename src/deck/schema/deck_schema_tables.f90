@@ -237,7 +237,7 @@ module deck_schema_tables_m
     ' PSID:i']
 
   !> Constraints, loads, initial values.
-  character(78), parameter :: table_conditions(*) = [character(78) :: &
+  character(92), parameter :: table_conditions(*) = [character(92) :: &
     'BOUNDARY_SPC_NODE tr', &
     ' NID:i>=1 CID:i DOFX:i|0|1 DOFY:i|0|1 DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
     'BOUNDARY_SPC_SET tr', &
@@ -248,6 +248,18 @@ module deck_schema_tables_m
     ' NSID:i>=1 DOF:i|1|2 VAD:i|0|1|2 LCID:i>=1 SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
     'BOUNDARY_PRESCRIBED_MOTION_RIGID tr', &
     ' PID:i>=1 DOF:i|1|2|7 VAD:i|0|1|2 LCID:i>=1 SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
+    'INITIAL_STRESS_SHELL r', &
+    ' EID:i>=1 NPLANE:i=1|1|4 NTHICK:i=1|1 NHISV:i>=0 NTENSR:ir LARGE:i|0|1 NTHINT:ir NTHHSV:ir', &
+    ' T:fs SIGXX:f SIGYY:f SIGZZ:f SIGXY:f SIGYZ:fr SIGZX:fr EPS:f', &
+    ' HISV1:f HISV2:f HISV3:f HISV4:f HISV5:f HISV6:f HISV7:f HISV8:f', &
+    ' T:fs16 SIGXX:f16 SIGYY:f16 SIGZZ:f16 SIGXY:f16', &
+    ' SIGYZ:fr16 SIGZX:fr16 EPS:f16', &
+    ' HISV1:f16 HISV2:f16 HISV3:f16 HISV4:f16 HISV5:f16', &
+    'INITIAL_STRAIN_SHELL r', &
+    ' EID:i>=1 NPLANE:i=1|1|4 NTHICK:i=1|1 LARGE:i|0|1', &
+    ' EPSXX:f EPSYY:f EPSZZ:f EPSXY:f EPSYZ:fs EPSZX:fs T:fs', &
+    ' EPSXX:f16 EPSYY:f16 EPSZZ:f16 EPSXY:f16 EPSYZ:fs16', &
+    ' EPSZX:fs16 T:fs16', &
     'INITIAL_VELOCITY o', &
     ' NSID:i>=0 NSIDEX:i>=0 BOXID:i>=0 IRIGID:i ICID:ir', &
     ' VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw', &
@@ -374,6 +386,12 @@ module deck_schema_tables_m
     'DATABASE_NODAL_FORCE_GROUP r', &
     ' NSID:i>=1 CID:ir', &
     'DATABASE_CROSS_SECTION_SET tr', &
-    ' NSID:i>=1 HSID:ir BSID:ir SSID:i>=1 TSID:ir DSID:ir ID:ir ITYPE:is']
+    ' NSID:i>=1 HSID:ir BSID:ir SSID:i>=1 TSID:ir DSID:ir ID:ir ITYPE:is', &
+    'INTERFACE_SPRINGBACK_LSDYNA', &
+    ' PSID:i>=0 NSHV:i>=0<=100 FTYPE:i|0|10 -:x FTENSR:ir NTHHSV:ir RFLAG:iw INTSTRN:is', &
+    ' OPTC:a SLDO:is NCYC:ir FSPLIT:ir NDFLAG:i|0|1 CFLAG:iw HFLAG:is', &
+    ' NID:i>=1 TC:i>=0<=7 RC:is', &
+    'INTERFACE_SPRINGBACK_EXCLUDE', &
+    ' KWDNAME:a80']
 
 end module deck_schema_tables_m
