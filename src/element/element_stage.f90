@@ -73,7 +73,8 @@ contains
       energy = 0.0_wp
       do k = 1, n
         elements%start_dilatation(slot, k) = mean(k)/material%bulk
-        energy = energy + start(k)*(elastic_energy(material, mean(k), deviator(:, k)))
+        energy = energy + start(k)*elastic_energy(material, mean(k), deviator(:, k)) &
+          *merge(1.0_wp + values(stage_thickness, k), 1.0_wp, material%follows_strain)
         if (n > 1) elements%point_deviator([(elements%point_start(i_chunk) + place &
           + (3*(k - 1) + i - 1)*chunk_size, i=1, 3)]) = deviator(:, k)
         first = elements%history_start(i_chunk) + place + (k - 1)*chunk_size*history_size(material)

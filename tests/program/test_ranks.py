@@ -204,6 +204,20 @@ def test_files_are_those_of_one_process(tmp_path, scene):
         assert added[-1] > added[0]
 
 
+def test_two_stages(tmp_path):
+    """The file for the second stage, and what that makes of it, on any number of processes."""
+    text = with_cycles(two_blocks(5, 0.0, 6.0), 60).replace("*END", "*INTERFACE_SPRINGBACK_LSDYNA\n0,\n*END")
+    (tmp_path / "job.k").write_text(text, encoding="ascii")
+    (tmp_path / "next.k").write_text(re.sub(r"\*(NODE|ELEMENT_SHELL)\n[^*]*", "", text).replace(
+        "*END", "*INCLUDE\non3/job.dynain\n*END"), encoding="ascii")
+    for deck, processes in (("job", 3), ("next", 2)):
+        run(tmp_path, 1, f"i={deck}.k", f"d={deck}_one")
+        run(tmp_path, processes, f"i={deck}.k", f"d=on{processes}")
+        assert_same(tmp_path / f"{deck}_one", tmp_path / f"on{processes}")
+    first, second = [(tmp_path / path).read_text().split("*INITIAL_STRESS_SHELL") for path in ("on3/job.dynain", "on2/next.dynain")]
+    assert len(first) == len(second) == 2 and first[1] != second[1]
+
+
 def test_restart_files_go_from_two_processes_to_three(tmp_path):
     (tmp_path / "job.k").write_text(with_cycles(everything(1), 40, 20), encoding="ascii")
     run(tmp_path, 1, "i=job.k", "d=one")
