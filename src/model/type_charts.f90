@@ -7,7 +7,7 @@ module type_charts_m
   implicit none
   private
   public :: scene_bound, scene_matching, scene_general, scene_sliding, scene_friction, &
-    scene_names, estimates, cheapest_type, better_type, mesh_order
+    scene_names, estimates, cheapest_type
 
   !> Kinds of scenes: type determined by other fields; flat matching meshes without sliding;
   !> general; prescribed sliding; friction.
@@ -38,9 +38,6 @@ module type_charts_m
   real(wp), parameter :: published_time(n_type) = [1.0_wp, 1.08_wp, 1.44_wp, 1.83_wp, 2.06_wp, &
     2.43_wp, 2.58_wp]
 
-  !> Mean order of convergence of the estimate.
-  real(wp), parameter :: mesh_order = 0.89_wp
-
 contains
 
   !> The cheapest type with an estimate of at most `bound`, or the type with the smallest estimate.
@@ -56,23 +53,5 @@ contains
     best = minloc(cost, 1)
     if (.not. any(estimates(:, scene) <= bound)) best = minloc(estimates(:, scene), 1)
   end function cheapest_type
-
-  !> The cheapest type expected to reach a bound that the present type has exceeded, or the type
-  !> with the smallest estimate, and its expected estimate. A type determined by other fields is
-  !> kept; matching faces are treated as general since they have moved.
-  pure subroutine better_type(scene, present, estimate, bound, best, expected)
-    integer, intent(in) :: scene, present
-    real(wp), intent(in) :: estimate, bound
-    integer, intent(out) :: best
-    real(wp), intent(out) :: expected
-    integer :: chart
-
-    best = present
-    expected = estimate
-    if (scene == scene_bound) return
-    chart = max(scene, scene_general)
-    best = cheapest_type(chart, estimates(present, chart)*bound/estimate)
-    expected = estimate*estimates(best, chart)/estimates(present, chart)
-  end subroutine better_type
 
 end module type_charts_m

@@ -13,7 +13,6 @@ module contact_reports_m
   use log_m, only : log_t, warn, write_log, to_text, percent, two_decimals
   use model_m, only : model_t, is_sheet
   use state_m, only : state_t
-  use type_charts_m, only : better_type, mesh_order
   use units_m, only : per_depth
   implicit none
   private
@@ -188,14 +187,13 @@ contains
       //percent(1.0_wp, estimate%least_margin)//' of the stable step'
   end function words
 
-  !> Whether the target was reached, and if not which type or mesh would reach it. Both follow from
-  !> static studies, so waves may need more.
+  !> Whether the target was reached, and if not whether waves prevent it or what finds a type and a
+  !> mesh that do.
   pure function target_words(contact, estimate) result(text)
     type(contact_t), intent(in) :: contact
     type(contact_estimate_t), intent(in) :: estimate
     character(:), allocatable :: text
-    integer :: better
-    real(wp) :: at_rest, expected
+    real(wp) :: at_rest
 
     text = 'the target '//percent(contact%target, 1.0_wp)//' is '
     if (sqrt(estimate%misfit/estimate%load) <= contact%target) then
@@ -208,16 +206,9 @@ contains
       text = text//'waves prevent it, the static part is '//percent(at_rest, 1.0_wp)
       return
     end if
-    call better_type(contact%scene, contact%contact_type, at_rest, contact%target, better, &
-      expected)
     if (has_waves(estimate)) text = text//'the static part is '//percent(at_rest, 1.0_wp)//'; '
-    if (expected <= contact%target) then
-      text = text//'by the published studies type '//to_text(better)//' would reach it'
-    else
-      text = text//'by the published studies no type would, but elements smaller by a factor of ' &
-        //two_decimals((expected/contact%target)**(1.0_wp/mesh_order))
-      if (better /= contact%contact_type) text = text//' with type '//to_text(better)
-    end if
+    text = text//'slideline-tools answer DECK --of QUANTITY --within X% --choose ' &
+      //'finds type and mesh'
   end function target_words
 
   !> Whether inertia of the elements at the surface is a notable part of the estimate.

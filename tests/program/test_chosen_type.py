@@ -131,10 +131,10 @@ def test_target(slideline, chosen, tmp_path, target, wanted, words, scene):
     assert len(reported) == 1
 
 
-@pytest.mark.parametrize("target, ctype, found", [(0.9, 1, "is reached"), (0.03, 1, "type 4 would reach it"),
-                                                  (1.0e-4, 5, "elements smaller by a factor of")])
+@pytest.mark.parametrize("target, ctype, found", [(0.9, 1, "is reached"), (0.03, 1, "--choose finds type and mesh"),
+                                                  (1.0e-4, 5, "--choose finds type and mesh")])
 def test_target_is_reported_at_the_end(slideline, tmp_path, target, ctype, found):
-    """Against the estimates of sleout; the factor is that of the order 0.89 of the published study."""
+    """Against the estimates of sleout; where it is not reached `answer` finds what would."""
     deck = press(ctype=ctype, pen=1.0e6, columns=(3, 4)).text().replace("\n,,\n", f"\n,,,,,,{target}\n")
     assert f",,{target}" in deck
     assert slideline("d=out", deck=deck).returncode == 0
@@ -143,11 +143,6 @@ def test_target_is_reported_at_the_end(slideline, tmp_path, target, ctype, found
     assert found in line, line
     estimate = float(re.search(r"stress behind it differ by ([\d.]+) %", log)[1]) / 100.0
     assert (estimate <= target) == ("is reached" in line)
-    if "smaller" in found:
-        factor = float(re.search(r"a factor of ([\d.E+-]+)", line)[1])
-        at_rest = float(re.search(r", without waves by ([\d.]+) %", log)[1]) / 100.0
-        assert 0.3 * estimate < at_rest < 0.9 * estimate
-        assert factor == pytest.approx((at_rest / target) ** (1.0 / 0.89), rel=0.01)
 
 
 def test_targets_that_are_refused(slideline):
@@ -201,7 +196,7 @@ def test_estimates_have_the_same_bits_with_threads(slideline, tmp_path):
 
 
 @pytest.mark.parametrize("target, found", [(0.02, r"waves prevent it, the static part is 0\.\d\d %$"),
-                                           (1.0e-5, r"the static part is 0\.\d\d %; .* elements smaller")])
+                                           (1.0e-5, r"the static part is 0\.\d\d %; slideline-tools answer DECK .* finds type and mesh$")])
 def test_waves_are_reported_apart(slideline, tmp_path, target, found):
     """Bars that collide are in equilibrium but for their waves: a target that is missed by these alone gets no finer mesh."""
     deck = Deck("bars")
@@ -224,4 +219,4 @@ def test_statics_have_no_waves(slideline, tmp_path):
     deck = press(ctype=5, pen=1.0e6, columns=(3, 4), implicit=True).text().replace("\n,,\n", "\n,,,,,,1e-6\n")
     assert slideline("d=out", deck=deck).returncode == 0
     log = (tmp_path / "out/job.log").read_text()
-    assert "without waves" not in log and re.search(r"is not reached; by .* smaller by a factor of [\d.E+]+\n", log)
+    assert "without waves" not in log and re.search(r"is not reached; slideline-tools answer .* finds type and mesh\n", log)

@@ -365,7 +365,7 @@ def test_what_is_not_reached_is_written_all_the_same(deck, tmp_path, tool, plain
 @PROGRAM
 def test_bad_requests_are_refused(deck, tmp_path, tool):
     for words, text in ((("--within", "2"), "percentage"), (("--within", "0%"), "percentage"), (("--within", "-2%"), "expected one argument"), 
-                        ((), "--within X% or --seconds N"),
+                        ((), "--within X% or --seconds N"), (("--seconds", "5", "--choose"), "--within X%"),
                         (("--seconds", "0"), "more than 0"), (("--within", "2%", "--adapt", "--mesh-parameter", "level"), "--adapt"), (("--seconds", "9", "--ncpu", "0"), "1 or more"),
                         (("--within", "2%", "--mesh-parameter", "level"), "no such parameter")):
         done = tool("answer", deck, "--of", QUANTITY, *words, "--folder", tmp_path / "out")

@@ -47,8 +47,6 @@ def test_patch():
     assert charted("patch") == pytest.approx(worst, rel=1e-9)
 
 
-def test_times_and_order():
+def test_times():
     times = column("speed_accuracy", "## What to choose", 3, "| type | exact pressure")
     assert charted("published_time") == [float(times[number].split()[0]) for number in range(1, 8)]
-    page = (ROOT / "doc/studies/choosing.md").read_text(encoding="utf-8")
-    assert re.search(r"mesh_order = ([\d.]+)_wp", SOURCE)[1] == re.search(r"at an order of ([\d.]+) in the mean", page)[1]

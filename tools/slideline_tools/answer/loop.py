@@ -52,8 +52,9 @@ class Answers:
         return sum(run.seconds for run in self.runs)
 
 
-def find(meshes: Meshes, quantities: typing.Sequence[Quantity], within: float | None, budget: float | None) -> Answers:
-    """Run until all `quantities` are known to the share `within`, or for `budget` seconds."""
+def find(meshes: Meshes, quantities: typing.Sequence[Quantity], within: float | None, budget: float | None,
+         most: float = math.inf) -> Answers:
+    """Run until all `quantities` are known to the share `within`, or for `budget` seconds, or on `most` meshes."""
     runs: list[MeshRun] = []
     spent, limit = 0.0, budget if budget is not None else BUDGET
     factor, reason = FIRST[0], ""
@@ -71,7 +72,7 @@ def find(meshes: Meshes, quantities: typing.Sequence[Quantity], within: float | 
              + ", ".join(f"{value:.6g}" for value in values))
         found = judged(quantities, runs, within)
         further = following_adapted if isinstance(meshes, AdaptedMeshes) else following
-        factor, reason = further(found, runs, within, limit - spent)
+        factor, reason = further(found, runs, within, limit - spent) if len(runs) < most else (0, "")
     for one in found.answers:
         one.reason = reason_of(one, within) if one.within else reason or reason_of(one, within)
     return found

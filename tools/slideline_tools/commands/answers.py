@@ -70,12 +70,12 @@ def found_of(options) -> int:
     meshes = (AdaptedMeshes if options.adapt else Meshes)(deck, pathlib.Path(), find_program(options.program), options.ncpu, options.mesh_parameter or "")
     folder = pathlib.Path(options.folder or f"results/{meshes.name}-answer{'-adapt' * options.adapt}")
 
-    def loop(ctype, seconds):
+    def loop(ctype, seconds, most=math.inf):
         meshes.folder = folder / f"type_{ctype}" if ctype else folder
         meshes.parameters = {"ctype": ctype} if ctype else {}
         before = f"type {ctype}, " if ctype else ""
         meshes.tell = lambda line: print(before + line, file=sys.stderr, flush=True)
-        found = find(meshes, quantities, within, seconds)
+        found = find(meshes, quantities, within, seconds, most)
         found.contact_type = ctype
         return found
     tried = []
@@ -93,26 +93,32 @@ def found_of(options) -> int:
 
 
 def chosen(loop, tried: list, seconds):
-    """The loops of all types, cheapest first, each for no longer than the best so far took; the one that reached the target
-    at least cost, else that of least uncertainty. Types that the program refuses for this deck are left out."""
+    """The loops of all types, cheapest first: on three meshes, and where none of these does, on further ones for no longer than the
+    best took; the one that reached the target at least cost, else that of least uncertainty. Types that the program refuses for
+    this deck are left out."""
+    from slideline_tools.answer.loop import FIRST
     from slideline_tools.program import REFUSED as BY_PROGRAM
     from slideline_tools.program import RunError
-    best, refused = None, None
-    for ctype in CHEAPEST_FIRST:
-        limit = seconds if best is None else min(best.seconds, seconds or math.inf)
-        try:
-            tried.append(one := loop(ctype, limit))
-        except RunError as problem:
-            if problem.outcome is None or problem.outcome.status != BY_PROGRAM:
-                raise
-            print(f"type {ctype} is refused: {problem.outcome.said}", file=sys.stderr)
-            refused = problem
-            continue
-        if one.reached and (best is None or one.seconds < best.seconds):
-            best = one
-    if not tried:
-        raise refused
-    return best or min(tried, key=lambda one: max(single.estimate.relative for single in one.answers))
+    types, best, refused = list(CHEAPEST_FIRST), None, None
+    for most in (len(FIRST), math.inf):
+        tried.clear()
+        for ctype in list(types):
+            try:
+                tried.append(one := loop(ctype, min(best.seconds, seconds or math.inf) if best and most > len(FIRST) else seconds, most))
+            except RunError as problem:
+                if problem.outcome is None or problem.outcome.status != BY_PROGRAM:
+                    raise
+                print(f"type {ctype} is refused: {problem.outcome.said}", file=sys.stderr)
+                types.remove(ctype)
+                refused = problem
+                continue
+            if one.reached and (best is None or one.seconds < best.seconds):
+                best = one
+        if not tried:
+            raise refused
+        if best:
+            return best
+    return min(tried, key=lambda one: max(single.estimate.relative for single in one.answers))
 
 
 def check(options, within) -> None:
@@ -121,6 +127,8 @@ def check(options, within) -> None:
         raise UserError("--adapt refines the mesh of the deck: it goes with no --mesh-parameter")
     if within is None and options.seconds is None:
         raise UserError("how well, or for how long? --within X% or --seconds N")
+    if options.choose and within is None:
+        raise UserError("--choose says which type reaches a target at least cost: --within X%")
     if options.seconds is not None and not 0.0 < options.seconds < math.inf:
         raise UserError(f"--seconds {options.seconds:g}: expected more than 0")
     if options.ncpu < 1:
