@@ -419,13 +419,12 @@ contains
     integer :: candidates(2), i
 
     neighbour = 0
-    if (-local%across <= min(local%along, local%square - local%along)) return
+    if (abs(local%across) <= min(local%along, local%square - local%along)) return
     candidates = [surface%previous(segment), surface%next(segment)]
     do i = 1, 2
       if (candidates(i) == 0) cycle
       other = local_coordinates(surface, polyline, point, candidates(i))
       if (other%along < 0.0_wp .or. other%along > other%square) cycle
-      if (other%across >= 0.0_wp) cycle
       if (.not. turns_gently(local%t, other%t)) cycle
       if (excess_of(local, other) >= -bisector_width(local, other)) cycle
       neighbour = candidates(i)
