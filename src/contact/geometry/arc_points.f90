@@ -16,7 +16,7 @@ module arc_points_m
   !> Without default values, which would be written before each use.
   type :: arc_block_t
     integer :: n
-    integer :: point(n_block)          !! on the list; the first of a virtual node
+    integer :: points(2, n_block)      !! on the list: the first and the last of a virtual node
     real(wp) :: bend(n_block), skew(n_block)         !! of the segment
     integer :: nodes(4, n_block)       !! of its own segment, or one twice, and of the segment
     real(wp) :: own_bend(n_block), own_skew(n_block) !! of its own segment
@@ -130,8 +130,7 @@ contains
     type(contact_state_t), intent(inout) :: memory !! out: present shapes of the points' segments
     type(contact_points_t), intent(inout) :: points
     type(arc_block_t) :: block
-    integer :: own(n_side), other(n_side), p, v
-    real(wp) :: own_xi
+    integer :: below(n_side), p, v, last
 
     if (points%n == 0) return
     call form_present_shapes(contact, memory, points)
@@ -139,30 +138,48 @@ contains
     v = 0
     do while (p < points%n)
       block%n = 0
-      do while (p < points%n .and. block%n < n_block)
-        p = p + 1
-        own = points%slave_nodes(:, p)
-        own_xi = points%slave_weights(2, p)
-        other = points%master_nodes(:, p)
-        if (memory%has%virtual_nodes) then
-          v = v + 1
-          other = nodes_below(contact, memory, memory%slave_status%active_points(v))
-        else if (other(1) == other(2)) then
-          own = other
-          own_xi = 0.0_wp
-          other = points%slave_nodes(:, p)
-        end if
-        call append_to_block(memory%arcs%shape, own, own_xi, other, p, block)
-        if (memory%has%virtual_nodes) p = last_of_virtual_node(points, p)
-      end do
-      call project_block(memory%positions, block)
       if (memory%has%virtual_nodes) then
+        do while (p < points%n .and. block%n < n_block)
+          v = v + 1
+          p = p + 1
+          last = last_of_virtual_node(points, p)
+          below = nodes_below(contact, memory, memory%slave_status%active_points(v))
+          call append_to_block(memory%arcs%shape, points%slave_nodes(:, p), &
+            points%slave_weights(2, p), below, [p, last], block)
+          p = last
+        end do
+        call project_block(memory%positions, block)
         call store_virtual_nodes(memory%positions, block, points)
       else
-        call store_points(block, points)
+        last = min(p + n_block, points%n)
+        call append_points(p + 1, last, points%slave_nodes, points%slave_weights, &
+          points%master_nodes, memory%arcs%shape, block)
+        call project_block(memory%positions, block)
+        call store_points(block, points%master_nodes, points%slave_weights, points%master_weights, &
+          points%gap, points%normal)
+        p = last
       end if
     end do
   end subroutine curve_points
+
+  !> Append points of the list. Bounds are explicit: descriptors would be read for each point.
+  pure subroutine append_points(first, last, slave_nodes, slave_weights, master_nodes, shape, block)
+    integer, intent(in) :: first, last
+    integer, intent(in) :: slave_nodes(n_side, *), master_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *)
+    type(arc_shape_t), intent(in) :: shape(*)
+    type(arc_block_t), intent(inout) :: block
+    integer :: p
+
+    do p = first, last
+      if (master_nodes(1, p) /= master_nodes(2, p)) then
+        call append_to_block(shape, slave_nodes(:, p), slave_weights(2, p), master_nodes(:, p), &
+          [p, p], block)
+      else
+        call append_to_block(shape, master_nodes(:, p), 0.0_wp, slave_nodes(:, p), [p, p], block)
+      end if
+    end do
+  end subroutine append_points
 
   !> Form the shapes of all segments that points are on, once each.
   pure subroutine form_present_shapes(contact, memory, points)
@@ -251,46 +268,52 @@ contains
 
   !> Append a point at xi between two nodes of its own surface, over a segment of the other one,
   !> unless both are flat. Nodes are on their arcs.
-  pure subroutine append_to_block(shape, own, own_xi, other, point, block)
+  pure subroutine append_to_block(shape, own, own_xi, other, points, block)
     type(arc_shape_t), intent(in) :: shape(*)         !! by the nodes where segments start
     integer, intent(in) :: own(n_side), other(n_side) !! local numbers; own: one node twice, or both
                                                       !! of a segment
     real(wp), intent(in) :: own_xi
-    integer, intent(in) :: point                      !! its number
+    integer, intent(in) :: points(2)                  !! its numbers, first and last
     type(arc_block_t), intent(inout) :: block
-    type(arc_shape_t) :: own_shape
+    real(wp) :: bend, skew
     integer :: n
 
-    own_shape = flat_arc
-    if (own(1) /= own(2) .and. own_xi*(1.0_wp - own_xi) > 0.0_wp) own_shape = shape(own(1))
-    if (is_flat(own_shape) .and. is_flat(shape(other(1)))) return
+    bend = 0.0_wp
+    skew = 0.0_wp
+    if (own(1) /= own(2) .and. own_xi*(1.0_wp - own_xi) > 0.0_wp) then
+      bend = shape(own(1))%bend
+      skew = shape(own(1))%skew
+    end if
+    if (is_flat(arc_shape_t(bend, skew)) .and. is_flat(shape(other(1)))) return
     n = block%n + 1
     block%n = n
-    block%point(n) = point
+    block%points(:, n) = points
     block%nodes(1:2, n) = own
     block%nodes(3:4, n) = other
     block%own_xi(n) = own_xi
-    block%own_bend(n) = own_shape%bend
-    block%own_skew(n) = own_shape%skew
+    block%own_bend(n) = bend
+    block%own_skew(n) = skew
     block%bend(n) = shape(other(1))%bend
     block%skew(n) = shape(other(1))%skew
   end subroutine append_to_block
 
   !> Store the projections of points.
-  pure subroutine store_points(block, points)
+  pure subroutine store_points(block, master_nodes, slave_weights, master_weights, gap, normal)
     type(arc_block_t), intent(in) :: block
-    type(contact_points_t), intent(inout) :: points
+    integer, intent(in) :: master_nodes(n_side, *)
+    real(wp), intent(inout), dimension(n_side, *) :: slave_weights, master_weights
+    real(wp), intent(inout) :: gap(*), normal(2, *)
     integer :: k
 
     do k = 1, block%n
-      associate (p => block%point(k))
-        points%gap(p) = block%gap(k)
-        if (points%master_nodes(1, p) /= points%master_nodes(2, p)) then
-          points%master_weights(:, p) = [1.0_wp - block%xi(k), block%xi(k)]
-          points%normal(:, p) = block%normal(k, :)
+      associate (p => block%points(1, k))
+        gap(p) = block%gap(k)
+        if (master_nodes(1, p) /= master_nodes(2, p)) then
+          master_weights(:, p) = [1.0_wp - block%xi(k), block%xi(k)]
+          normal(:, p) = block%normal(k, :)
         else
-          points%slave_weights(:, p) = [1.0_wp - block%xi(k), block%xi(k)]
-          points%normal(:, p) = -block%normal(k, :)
+          slave_weights(:, p) = [1.0_wp - block%xi(k), block%xi(k)]
+          normal(:, p) = -block%normal(k, :)
         end if
       end associate
     end do
@@ -308,8 +331,8 @@ contains
 
     do k = 1, block%n
       normal = block%normal(k, :)
-      first = block%point(k)
-      last = last_of_virtual_node(points, first)
+      first = block%points(1, k)
+      last = block%points(2, k)
       lever = 0.0_wp
       along = 0.0_wp
       associate (a => points%slave_nodes(1, first), b => points%slave_nodes(2, first))

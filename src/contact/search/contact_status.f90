@@ -3,7 +3,7 @@
 !> its segment; a separated one is searched among its candidate pairs once it can have come near
 !> (doc/theory/contact.md, sections 3 and 4).
 module contact_status_m
-  use search_state_m, only : contact_status_t, candidates_t, separated, active
+  use search_state_m, only : contact_status_t, candidates_t, pass_t, separated, active
   use entry_m, only : found_contact_t, find_contact, is_pair, is_opposed, contact_gap
   use projection_m, only : projection_t, follow_contact, gentle_turn
   use projection_block_m, only : projection_block_t, n_block, project_block, resolve_ambiguous
@@ -86,6 +86,8 @@ contains
         surface%segments, polyline, points, block%segment, block%t, block%d)
       call project_block(block)
       if (block%n_ambiguous > 0) call resolve_ambiguous(surface, polyline, block)
+      if (block%n_ambiguous > 0 .and. status%pass%has_arcs) &
+        call keep_in_front(status%pass, status%active_points(first:), block)
       i = status%active_points(first)
       if (status%active_points(first + block%n - 1) == i + block%n - 1) then
         call store_projections(block%n, block%xi, block%gap, block%normal, status%xi(i), &
@@ -102,6 +104,25 @@ contains
         status%active_points(first), status%due, n_left)
     end do
   end subroutine follow_active
+
+  !> Points in front of their segments, in contact between arcs, stay as those behind do: no
+  !> neighbour is nearer.
+  pure subroutine keep_in_front(pass, points, block)
+    type(pass_t), intent(in) :: pass
+    integer, intent(in), contiguous :: points(:) !! at least those of the block
+    type(projection_block_t), intent(inout) :: block
+    real(wp) :: to_end
+    integer :: k
+
+    do k = 1, block%n
+      if (.not. block%ambiguous(k) > 0.0_wp .or. block%gap(k) < 0.0_wp) cycle
+      to_end = 0.5_wp - abs(block%xi(k) - 0.5_wp)
+      if (to_end < 0.0_wp .or. block%gap(k)**2 > to_end**2*(block%t(1, k)**2 + block%t(2, k)**2)) &
+        cycle
+      if (block%gap(k) < contact_gap(pass, points(k), block%segment(k))) block%ambiguous(k) = 0.0_wp
+    end do
+    block%n_ambiguous = count(block%ambiguous(:block%n) > 0.0_wp)
+  end subroutine keep_in_front
 
   !> Append the points of a block that need a decision.
   pure subroutine list_ambiguous(n, ambiguous, points, due, n_due)
