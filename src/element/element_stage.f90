@@ -54,7 +54,7 @@ contains
     type(block_state_t), intent(inout) :: elements
     real(wp), parameter :: at_rest(2, 4) = 0.0_wp
     real(wp) :: mean(n_point), stretch(n_point), start(n_point), deviator(3, n_point), energy, &
-      memory(2)
+      memory(2), diagonals(4)
     integer :: i_chunk, place, n, k, i, first
 
     i_chunk = (slot - 1)/chunk_size + 1
@@ -97,7 +97,8 @@ contains
         elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) + energy
       end if
       if (.not. has_hourglass_memory(model, i_chunk, elements)) return
-      call find_hourglass(model, i_chunk, elements%reference(slot, :4), .true., &
+      diagonals = elements%reference(slot, :4)
+      call find_hourglass(model, i_chunk, diagonals, .true., &
         values(stage_hourglass:stage_hourglass + 1, 1), memory)
       first = elements%hourglass_start(i_chunk) + place
       elements%hourglass_strain([first, first + chunk_size]) = memory
