@@ -2,13 +2,14 @@
 !> Masses. Lumped: a quarter of each quad, a third of each triangle to its nodes; in axisymmetric
 !> bodies the row sums of the consistent mass. Consistent: rho times the integral of N_a N_b over
 !> the initial shape, which 2x2 Gauss points integrate exactly for quads and triangles; of N_a N_b r
-!> in axisymmetric bodies, of one degree more than 2x2 points hold: 3x3.
+!> in axisymmetric bodies, of one degree more than 2x2 points hold: 3x3. Elements with nodes of a
+!> rigid body are lumped, since the masses of those nodes are the body's.
 module element_mass_m
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use mesh_m, only : mesh_t
   use model_m, only : model_t
-  use rigids_m, only : rigid_t
+  use rigids_m, only : rigid_t, mark_rigid_nodes
   use quad_points_m, only : n_point, point_areas, shape_at_points
   use sparse_m, only : sparse_t, add_block
   implicit none
@@ -27,12 +28,14 @@ contains
     real(wp), intent(in), optional :: rates(:, :) !! (2, n_part + 1) D of each part and of lumped
                                                   !! masses, 1/s; absent: 1
     real(wp) :: mass(4, 4), weights(2, size(model%parts) + 1)
+    logical :: is_rigid(model%mesh%n_node)
     integer :: i, k
 
     weights = 1.0_wp
     if (present(rates)) weights = rates
+    is_rigid = mark_rigid_nodes(model%rigids, model%mesh%n_node)
     do i = 1, model%mesh%n_element
-      mass = factor*element_mass(model, i)
+      mass = factor*element_mass(model, i, is_rigid)
       associate (nodes => model%mesh%element_nodes(:, i))
         do k = 1, 2
           call add_block(matrix, equation(k, nodes), equation(k, nodes), &
@@ -52,20 +55,23 @@ contains
   end subroutine add_mass
 
   !> Product of the mass matrix, or the matrix of mass damping, and a nodal vector.
-  pure function mass_times(model, vector, rates) result(product)
+  pure function mass_times(model, lumped, vector, rates) result(product)
     type(model_t), intent(in) :: model
+    real(wp), intent(in) :: lumped(:)    !! (n_node) lumped masses, for the nodes of rigid bodies
     real(wp), intent(in) :: vector(:, :) !! (2, n_node)
     real(wp), intent(in), optional :: rates(:, :) !! (2, n_part + 1) D of each part and of lumped
                                                   !! masses, 1/s; absent: 1
     real(wp) :: product(2, size(vector, 2))
     real(wp) :: mass(4, 4), part(2, 4), weights(2, size(model%parts) + 1)
+    logical :: is_rigid(model%mesh%n_node)
     integer :: i, k
 
     weights = 1.0_wp
     if (present(rates)) weights = rates
     product = 0.0_wp
+    is_rigid = mark_rigid_nodes(model%rigids, model%mesh%n_node)
     do i = 1, model%mesh%n_element
-      mass = element_mass(model, i)
+      mass = element_mass(model, i, is_rigid)
       associate (nodes => model%mesh%element_nodes(:, i), &
         weight => weights(:, model%mesh%element_part(i)))
         part = matmul(vector(:, nodes), mass)
@@ -74,11 +80,18 @@ contains
         end do
       end associate
     end do
-    if (.not. allocated(model%conditions%lumped_masses)) return
-    do i = 1, size(model%conditions%lumped_masses)
-      associate (lump => model%conditions%lumped_masses(i))
-        product(:, lump%node) = product(:, lump%node) + weights(:, size(weights, 2))*lump%mass &
-          *vector(:, lump%node)
+    if (allocated(model%conditions%lumped_masses)) then
+      do i = 1, size(model%conditions%lumped_masses)
+        associate (lump => model%conditions%lumped_masses(i))
+          product(:, lump%node) = product(:, lump%node) + weights(:, size(weights, 2))*lump%mass &
+            *vector(:, lump%node)
+        end associate
+      end do
+    end if
+    do i = 1, size(model%rigids)
+      associate (nodes => model%rigids(i)%nodes, weight => weights(:, model%rigids(i)%part))
+        product(:, nodes) = spread(weight, 2, size(nodes))*spread(lumped(nodes), 1, 2) &
+          *vector(:, nodes)
       end associate
     end do
   end function mass_times
@@ -90,27 +103,38 @@ contains
     real(wp), intent(out) :: kinetic(:)     !! (n_part) J/m, or J per radian
     real(wp), intent(out) :: momentum(:, :) !! (2, n_part) kg/s
     real(wp) :: v(2, 4), p(2, 4)
+    logical :: is_rigid(model%mesh%n_node)
     integer :: i, part
 
     kinetic = 0.0_wp
     momentum = 0.0_wp
+    is_rigid = mark_rigid_nodes(model%rigids, model%mesh%n_node)
     do i = 1, model%mesh%n_element
       part = model%mesh%element_part(i)
       v = velocity(:, model%mesh%element_nodes(:, i))
-      p = matmul(v, element_mass(model, i))
+      p = matmul(v, element_mass(model, i, is_rigid))
       kinetic(part) = kinetic(part) + 0.5_wp*sum(v*p)
       momentum(:, part) = momentum(:, part) + sum(p, 2)
     end do
   end subroutine sum_part_motion
 
   !> Mass matrix of one element, one direction.
-  pure function element_mass(model, i) result(mass)
+  pure function element_mass(model, i, is_rigid) result(mass)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
+    logical, intent(in) :: is_rigid(:) !! (n_node) nodes of rigid bodies
     real(wp) :: mass(4, 4)
     real(wp) :: x(2, 4), areas(n_point)
     integer :: b, k
 
+    if (any(is_rigid(model%mesh%element_nodes(:, i)))) then
+      areas = lumped_shares(model, model%mesh%element_part(i), model%mesh%element_nodes(:, i))
+      mass = 0.0_wp
+      do k = 1, 4
+        mass(k, k) = areas(k)
+      end do
+      return
+    end if
     x = model%mesh%coordinates(:, model%mesh%element_nodes(:, i))
     if (model%is_axisymmetric) then
       mass = axisym_mass(x)

@@ -55,6 +55,7 @@ contains
     do i_chunk = 1, model%layout%n_chunk
       associate (part => model%parts(model%layout%chunk_part(i_chunk)), &
         material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
+        if (material%is_rigid) cycle
         do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
           if (model%layout%slot_element(slot) == 0) cycle
           associate (nodes => model%layout%slot_nodes(:, slot))

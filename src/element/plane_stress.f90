@@ -24,6 +24,8 @@ module plane_stress_m
   integer, parameter :: most_iterations = 60
   !> Largest sigma_zz, as a share of the stresses it is the difference of.
   real(wp), parameter :: tolerance = 1.0e-12_wp
+  !> Share after the last iteration above which no thickness is without stress across it.
+  real(wp), parameter :: largest_miss = 1.0e-9_wp
   !> Bounds of the strain increment of the thickness, and of its change in an iteration.
   real(wp), parameter :: most_strain = 1.9_wp, most_change = 0.5_wp
 
@@ -90,6 +92,8 @@ contains
       call update_strain(material, iteration, stress, search)
       if (.not. any(search%is_open)) exit
     end do
+    ! The run stops where no strain of the thickness was found (health, implicit_forces).
+    where (search%is_open) stress%hzz = -1.0_wp
     elements%eos_state(place:place + chunk_size - 1) = stress%hzz
     call finish_work(material%follows_strain, old, start, stress)
   end subroutine update_sheet
@@ -143,7 +147,8 @@ contains
         if (abs(change) > 0.0_wp) search%slope(i) = max(0.1_wp*stiffness, &
           (residual - search%residual(i))/change)
       end if
-      search%is_open(i) = abs(residual) > tolerance*(material%bulk*(abs(search%dilation(i)) &
+      search%is_open(i) = abs(residual) > merge(tolerance, largest_miss, &
+        iteration < most_iterations)*(material%bulk*(abs(search%dilation(i)) &
         + abs(growth)) + abs(stress%sxx(i)) + abs(stress%syy(i)))
       if (breaks) search%is_open(i) = search%is_open(i) .and. abs(stress%sxx(i)) &
         + abs(stress%syy(i)) + abs(stress%sxy(i)) > 0.0_wp

@@ -15,7 +15,7 @@ module quad_m
   use material_dispatch_m, only : update_stress, history_size, has_mean_dilatation
   use model_m, only : model_t
   use parts_m, only : hourglass_t, material_t, gives_pressure
-  use plane_stress_m, only : update_sheet, form_membrane_stress
+  use plane_stress_m, only : thinning_start, update_sheet, form_membrane_stress
   use quad_plain_m, only : is_plain, advance_plain
   use quad_kinematics_m, only : form_shape, form_increments, form_forces, form_axisym_forces, &
     form_rubber_forces, add_pressure_forces, inverse_start
@@ -79,6 +79,11 @@ contains
       elements%time_limit(i_chunk) = limits(1)
       elements%volume_limit(i_chunk) = limits(2)
       if (.not. material%is_plane_stress) return
+      associate (first => thinning_start(elements, i_chunk, 1), n => chunk_size*merge(4, 1, &
+        elements%point_start(i_chunk) > 0))
+        elements%volume_limit(i_chunk) = min(elements%volume_limit(i_chunk), 1.0_wp &
+          + minval(elements%eos_state(first:first + n - 1)))
+      end associate
       associate (thickness => model%sections(part%section)%thickness)
         chunk%force3 = thickness*chunk%force3
         chunk%force4 = thickness*chunk%force4

@@ -60,7 +60,8 @@ module history_tables_m
     history_table_t('matsum', asked_alone, each_part, text_instants, &
       'time,#part,kinetic,internal,hourglass,momentum_x,momentum_y,mass,+added_mass'), &
     history_table_t('rwforc', asked_alone, each_wall, text_instants, &
-      'time,#wall,fx,fy,normal_force,impulse,work,#n_active,tangential_force,friction'), &
+      'time,#wall,fx,fy,normal_force,impulse,work,#n_active,tangential_force,friction,' &
+      //'displacement'), &
     history_table_t('sleout', asked_alone, each_contact, text_instants, &
       'time,#cycle,#interface,energy,damping,stored,friction,estimate,row_energy,step_limit'), &
     history_table_t('spcforc', asked_alone, each_support, text_instants, 'time,#node,fx,fy'), &

@@ -19,6 +19,7 @@ module rigids_m
     real(wp) :: given_mass = 0.0_wp   !! kg/m
     real(wp) :: given_centre(2) = 0.0_wp
     real(wp) :: given_moment = 0.0_wp !! about the centre of mass, kg m
+    character(:), allocatable :: source !! file and line of *PART_INERTIA, for messages
   contains
     procedure :: visit => visit_rigid
   end type rigid_t
@@ -52,6 +53,7 @@ contains
     call visitor%visit('given_mass', self%given_mass)
     call visitor%fixed('given_centre', self%given_centre)
     call visitor%visit('given_moment', self%given_moment)
+    call visitor%visit('source', self%source)
   end subroutine visit_rigid
 
 end module rigids_m

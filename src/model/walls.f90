@@ -20,6 +20,7 @@ module walls_m
     real(wp) :: death = 1.0e20_wp            !! death time, s
     real(wp) :: mass = 0.0_wp                !! of a moving wall, kg/m; 0: fixed
     real(wp) :: velocity = 0.0_wp            !! along the normal at time zero, m/s
+    character(:), allocatable :: source      !! file and line, for messages
     integer, allocatable :: nodes(:)         !! indices of its nodes
     integer, allocatable :: node_index(:)    !! (n_special) index in `nodes`, 0 = not in it
   contains
@@ -60,6 +61,7 @@ contains
     call visitor%visit('death', self%death)
     call visitor%visit('mass', self%mass)
     call visitor%visit('velocity', self%velocity)
+    call visitor%visit('source', self%source)
     call visitor%visit('nodes', self%nodes)
     call visitor%visit('node_index', self%node_index)
   end subroutine visit_wall

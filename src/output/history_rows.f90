@@ -117,7 +117,8 @@ contains
       case (table_rwforc)
         associate (wall => shot%walls(i))
           row = [real(model%walls(i)%id, wp), wall%force, wall%normal_force, wall%impulse, &
-            wall%work, real(wall%n_active, wp), wall%tangential_force, wall%dissipated]
+            wall%work, real(wall%n_active, wp), wall%tangential_force, wall%dissipated, &
+            wall%displacement]
         end associate
       case (table_spcforc)
         row = [real(model%mesh%node_id(shot%supports(i)), wp), shot%reaction(:, i)]

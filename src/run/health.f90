@@ -11,6 +11,7 @@ module health_m
   use layout_m, only : chunk_size, slot_part, tile_t
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
+  use plane_stress_m, only : thinning_start
   use state_m, only : state_t
   implicit none
   private
@@ -140,7 +141,7 @@ contains
     character(:), allocatable :: what
     integer :: test, slot, first, last
 
-    do test = 1, 3
+    do test = 1, 4
       do slot = 1, model%layout%n_slot
         if (model%layout%slot_element(slot) == 0) cycle
         what = element_fault(model, state, slot, test)
@@ -162,8 +163,8 @@ contains
       'negative area or values that are not finite'//instant_text(state), status_run)
   end subroutine name_bad_chunk
 
-  !> Fault of an element in words, empty if there is none, in three passes: stress, volume, and the
-  !> volume limit of its equation of state.
+  !> Fault of an element in words, empty if there is none, in four passes: stress, volume, the
+  !> volume limit of its equation of state, and its thickness in plane stress.
   function element_fault(model, state, slot, test) result(what)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -193,6 +194,14 @@ contains
           //'pressure of equation of state '//to_text(eos%id)//' has no bound (1 - (S1 - 1) mu - ' &
           //'S2 mu^2/(1 + mu) - S3 mu^3/(1 + mu)^2 comes to 0),'
       end associate
+    case (4)
+      i_chunk = (slot - 1)/chunk_size + 1
+      if (.not. model%materials(model%parts(model%layout%chunk_part(i_chunk))%material) &
+        %is_plane_stress) return
+      first = thinning_start(state%elements, i_chunk, 1) + mod(slot - 1, chunk_size)
+      if (minval(state%elements%eos_state(first:first + chunk_size*merge(3, 0, &
+        state%elements%point_start(i_chunk) > 0):chunk_size)) <= -1.0_wp) &
+        what = 'no thickness without stress across it (plane stress)'
     end select
   end function element_fault
 

@@ -19,12 +19,13 @@ module snapshot_filling_m
   use parts_m, only : has_memory_of_heat
   use snapshot_m, only : snapshot_t, interface_result_t, slave_result_t
   use sorting_m, only : sorted_order
+  use rigid_state_m, only : rigid_state_t
   use state_m, only : state_t
   use stress_error_m, only : estimate_errors
   implicit none
   private
   public :: start_snapshot, fill_motion, find_motion, damping_at, fill_energies, fill_parts, &
-    fill_interfaces, fill_plot, fill_slaves
+    fill_bodies, fill_interfaces, fill_plot, fill_slaves
 
   !> Nodes whose motion is summed at a time.
   integer, parameter :: block_size = 512
@@ -299,6 +300,24 @@ contains
       end associate
     end do
   end subroutine fill_parts
+
+  !> Fill the motion of rigid bodies, if rbdout is asked for.
+  pure subroutine fill_bodies(rigids, lag, snapshot)
+    type(rigid_state_t), intent(in) :: rigids(:)
+    real(wp), intent(in) :: lag !! time since the instant of the velocities, s
+    type(snapshot_t), intent(inout) :: snapshot
+    integer :: i
+
+    if (.not. allocated(snapshot%bodies)) return
+    do i = 1, size(rigids)
+      associate (rigid => rigids(i), body => snapshot%bodies(i))
+        body%displacement = rigid%displacement
+        body%position = rigid%centre + rigid%displacement(1:2)
+        body%velocity = rigid%velocity + lag*rigid%acceleration
+        body%acceleration = rigid%acceleration
+      end associate
+    end do
+  end subroutine fill_bodies
 
   !> Fill the resultants of all interfaces and transducers.
   subroutine fill_interfaces(model, state, snapshot)

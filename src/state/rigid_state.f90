@@ -5,7 +5,8 @@ module rigid_state_m
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: rigid_state_t, rotation_terms, rotation_shift, velocity_of
+  public :: rigid_state_t, rotation_terms, rotation_shift, velocity_of, damping_of, &
+    body_scales
 
   !> One rigid body. Positions of its nodes follow from `displacement` alone, so that its shape
   !> never drifts.
@@ -55,6 +56,36 @@ contains
     there(1) = velocity(1) - velocity(3)*arm(2)
     there(2) = velocity(2) + velocity(3)*arm(1)
   end function velocity_of
+
+  !> D of each degree of freedom at an angle. The rotation is damped by the forces -D m v on the
+  !> nodes in their current positions.
+  pure function damping_of(rigid, angle, damping) result(rate)
+    type(rigid_state_t), intent(in) :: rigid
+    real(wp), intent(in) :: angle
+    real(wp), intent(in) :: damping(2)
+    real(wp) :: rate(3)
+    real(wp) :: along_x
+
+    rate(1:2) = damping
+    rate(3) = damping(1)
+    if (.not. abs(damping(1) - damping(2)) > 0.0_wp) return
+    along_x = cos(angle)**2*rigid%second(1) + sin(angle)**2*rigid%second(2) &
+      - sin(2.0_wp*angle)*rigid%second(3)
+    rate(3) = (damping(2)*along_x + damping(1)*(rigid%inertia(3) - along_x))/rigid%inertia(3)
+  end function damping_of
+
+  !> Factors of displacement and turn in the unknowns of the implicit driver: 1, 1 and the radius of
+  !> gyration, so that all are lengths.
+  pure function body_scales(rigids) result(scales)
+    type(rigid_state_t), intent(in) :: rigids(:)
+    real(wp) :: scales(3, size(rigids))
+    integer :: i
+
+    scales = 1.0_wp
+    do i = 1, size(rigids)
+      scales(3, i) = sqrt(rigids(i)%inertia(3)/rigids(i)%inertia(1))
+    end do
+  end function body_scales
 
   !> Visit the components of the rigid body.
   subroutine visit_rigid(self, visitor)

@@ -70,6 +70,7 @@ module snapshot_m
     integer :: n_active = 0
     real(wp) :: tangential_force = 0.0_wp
     real(wp) :: dissipated = 0.0_wp
+    real(wp) :: displacement = 0.0_wp  !! along the normal
   end type wall_result_t
 
   !> One element of the histories.

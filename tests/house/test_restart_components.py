@@ -29,8 +29,10 @@ EXEMPT = {
     "step_control_t": {"next": "planned anew", "is_last": "planned anew", "end_time": "from the deck, which may change it"}
     | dict.fromkeys(("is_automatic", "least", "most", "few", "many", "changes"), OF_THE_DECK),
     "step_t": dict.fromkeys(("is_dynamic", "alpha_m", "alpha_f", "gamma", "beta"), OF_THE_DECK) | dict.fromkeys(
-        ("time", "dt", "equations", "starts_slipping", "prescribed"), "set in each step") | {"old_force": "formed from those of trial_t"},
-    "trial_t": {"motion": "of the step that is over", "elements": "those of the state", "contacts": "those of the state",
+        ("time", "dt", "equations", "starts_slipping", "prescribed"), "set in each step") | dict.fromkeys(
+            ("old_force", "old_bodies"), "formed from those of trial_t"),
+    "trial_t": {"motion": "of the step that is over", "bodies": "of the step that is over",
+                "elements": "those of the state", "contacts": "those of the state",
                 "slots": "formed with each force", "before": "used up before a file is written"},
     "mesh_t": {"deck_node": "the order of results, which the first process writes"},
     "model_t": dict.fromkeys(("node_sets", "segment_sets", "part_sets", "shell_sets"), "conditions and surfaces have been made of them")

@@ -44,4 +44,19 @@ def test_momentum_goes_from_the_body_to_the_seat(slideline, tmp_path):
 def test_what_nodes_cannot_carry_is_named(slideline, deck):
     done = slideline("d=out", deck=deck)
     assert done.returncode == 1
-    assert "rigid part 1: no masses above 0 at its nodes have the mass 40" in done.stderr.replace("4.000000E+01", "40")
+    found = done.stderr.replace("4.000000E+01", "40")
+    assert ".k:21: *PART_INERTIA: rigid part 1: no masses above 0 at its nodes have the mass 40" in found
+
+
+def test_elements_that_share_its_nodes_are_named(slideline):
+    """Their mass there is part of TM: a warning with file and line."""
+    text = impact().text()
+    done = slideline("d=out", deck=text.replace("*ELEMENT_SHELL\n", "*ELEMENT_SHELL\n900,2,1,2,6,5\n", 1))
+    assert "*PART_INERTIA: 4 nodes of this part belong to elements of other parts too" in done.stderr + done.stdout
+
+
+def test_a_light_wall_is_named(slideline):
+    text = impact().text().replace("*END", "*RIGIDWALL_PLANAR_MOVING\n0,\n0.0,-0.5,0.0,0.0,0.0,0.0,0.0\n0.1,1.0\n*END")
+    done = slideline("d=out", deck=text)
+    assert done.returncode == 1
+    assert "*RIGIDWALL_PLANAR_MOVING: the mass 1.000000E-01 of the wall is not above that of a node" in done.stderr

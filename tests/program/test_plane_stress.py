@@ -91,3 +91,16 @@ def test_stiffness_damping_is_refused(exe, tmp_path):
     deck.control(1.0).elastic(RHO, YOUNG, POISSON).add("*DAMPING_PART_STIFFNESS", (1, 0.1))
     deck.mesh(*grid(1, 1))
     assert "part 1 has plane stress" in run(exe, tmp_path, *write(tmp_path, deck), status=1).stderr
+
+
+def test_a_thickness_that_is_not_found_is_named(exe, tmp_path):
+    """One step that stretches an element by so much that no thickness is without stress across it."""
+    deck = Deck("torn in one step").add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 1.0))
+    deck.add("*SECTION_SHELL", (1, 12, None, 4), (THICKNESS,)).add("*PART", "sheet", (1, 1, 1)).elastic(RHO, YOUNG, 0.49)
+    ids = deck.mesh(*grid(1, 1)).tolist()
+    deck.curve(1, [(0.0, 0.0), (1.0, 1.0)])
+    for node, x, y in zip(ids, (0.0, 20.0, 0.0, 20.0), (0.0, 0.0, 20.0, 20.0)):
+        deck.prescribe(node, 1, 2, 1, x).prescribe(node, 2, 2, 1, y)
+    (tmp_path / "job.k").write_text(deck.text())
+    done = run(exe, tmp_path, "i=job.k", "d=out", status=2)
+    assert "no thickness in plane stress" in done.stderr

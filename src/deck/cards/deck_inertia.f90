@@ -2,11 +2,13 @@
 !> *PART_INERTIA: mass, centre of mass, moment of inertia and velocity of a rigid part.
 module deck_inertia_m
   use kinds_m, only : wp
+  use log_m, only : to_text
   use model_m, only : model_t
+  use rigids_m, only : rigid_t
   use deck_cards_m, only : cursor_t, next_card, reject_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node
-  use deck_lines_m, only : deck_t
+  use deck_lines_m, only : deck_t, line_warning, where_text
   use deck_values_m, only : integer_of, real_of, reals_of, location_of, resolve_id
   implicit none
   private
@@ -57,6 +59,8 @@ contains
           'is the mass of an axisymmetric part, which has that of its elements')
         associate (body => model%rigids(k))
           body%has_inertia = .true.
+          body%source = where_text(deck, cards(3)%line)
+          call warn_of_shared(deck, cards(3)%line, model, body)
           body%given_mass = real_of(cards(3), 'TM')
           body%given_centre = reals_of(cards(3), 'XC', 'YC')
           body%given_moment = real_of(cards(4), 'IZZ')
@@ -69,5 +73,27 @@ contains
       end associate
     end do
   end subroutine set_inertias
+
+  !> Warn of nodes of elements of other parts: the mass of these elements there is part of TM.
+  subroutine warn_of_shared(deck, line, model, body)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line
+    type(model_t), intent(in) :: model
+    type(rigid_t), intent(in) :: body
+    logical :: is_own(0:model%mesh%n_node), is_shared(0:model%mesh%n_node)
+    integer :: i
+
+    is_own = .false.
+    is_own(body%nodes) = .true.
+    is_shared = .false.
+    do i = 1, model%mesh%n_element
+      if (model%mesh%element_part(i) == body%part) cycle
+      is_shared(model%mesh%element_nodes(:, i)) = .true.
+    end do
+    i = count(is_own .and. is_shared)
+    if (i > 0) call line_warning(deck, line, 'shared inertia'//to_text(line), to_text(i) &
+      //' nodes of this part belong to elements of other parts too: the mass of these elements ' &
+      //'there counts as part of TM')
+  end subroutine warn_of_shared
 
 end module deck_inertia_m

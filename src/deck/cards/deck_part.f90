@@ -346,12 +346,9 @@ contains
       end do
     end associate
     if (size(parts) == 0) return
-    if (model%controls%implicit%is_on) call line_error(deck, &
-      deck%maps(a_material)%lines(model%parts(parts(1))%material), '*MAT_RIGID: the implicit ' &
-      //'method does not have rigid bodies')
-    if (size(parts) == size(model%parts) .and. model%controls%dt_curve == 0) call line_error(deck, &
-      deck%maps(a_part)%lines(1), 'all parts are rigid, so that no element has a time step; give ' &
-      //'a curve LCTM of *CONTROL_TIMESTEP')
+    if (size(parts) == size(model%parts) .and. model%controls%dt_curve == 0 .and. .not. &
+      model%controls%implicit%is_on) call line_error(deck, deck%maps(a_part)%lines(1), 'all parts' &
+      //' are rigid, so that no element has a time step; give a curve LCTM of *CONTROL_TIMESTEP')
   end subroutine make_rigids
 
   !> Report a rigid body without nodes, and nodes of two rigid bodies.

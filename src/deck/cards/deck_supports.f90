@@ -222,6 +222,9 @@ contains
       motion%kind = integer_of(card, 'VAD')
       motion%scale = real_of(card, 'SF')
       call find_id(deck, a_curve, card, 'LCID', motion%curve)
+      if (motion%kind == motion_acceleration .and. is_static) call report_field(deck, card, 'VAD', &
+        'is an acceleration, which has no meaning in statics ' &
+        //'(0 velocity or 2 displacement, or IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS)')
       if (has_field(card, 'PID')) then
         call read_rigid_motion(deck, card, motion, rigid_lines, model)
         cycle
@@ -229,9 +232,6 @@ contains
       call card_nodes(deck, card, model, nodes)
       call refuse_rigid(deck, location_t(card%line, 1, field=1), nodes, owner, model, &
         '*BOUNDARY_PRESCRIBED_MOTION_RIGID moves the body')
-      if (motion%kind == motion_acceleration .and. is_static) call report_field(deck, card, 'VAD', &
-        'is an acceleration, which has no meaning in statics ' &
-        //'(0 velocity or 2 displacement, or IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS)')
       if (motion%curve == 0) cycle
       do k = 1, size(nodes)
         if (n == size(motions)) then

@@ -57,8 +57,7 @@ contains
     end do
     if (all(lines == 0)) return
     i = merge(lines(2), lines(1), lines(2) > 0)
-    if (model%controls%implicit%is_on .and. .not. model%controls%implicit%is_dynamic) call &
-      line_warning(deck, i, 'static velocity', 'an initial velocity has no effect in statics')
+    call warn_in_statics(deck, model, i)
     if (model%is_axisymmetric) then
       held = pack([(node, node=1, model%mesh%n_node)], abs(velocity(1, :)) > 0.0_wp &
         .and. (mark_axis(model) .or. mark_rigid_nodes(model%rigids, model%mesh%n_node)))
@@ -68,6 +67,16 @@ contains
     end if
     call move_alloc(velocity, model%conditions%initial_velocity)
   end subroutine read_velocities
+
+  !> Warn once of initial velocities in statics.
+  subroutine warn_in_statics(deck, model, line)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: line
+
+    if (model%controls%implicit%is_on .and. .not. model%controls%implicit%is_dynamic) call &
+      line_warning(deck, line, 'static velocity', 'an initial velocity has no effect in statics')
+  end subroutine warn_in_statics
 
   !> *INITIAL_VELOCITY: a node set or all nodes, with BOXID those in the box, without the nodes of a
   !> second set, which have another velocity.
@@ -208,6 +217,7 @@ contains
       if (model%rigids(body)%has_velocity) then
         call report_field(deck, card, 'PID', 'has a velocity by another card')
       else
+        call warn_in_statics(deck, model, card%line)
         model%rigids(body)%has_velocity = .true.
         model%rigids(body)%velocity = [reals_of(card, 'VX', 'VY'), real_of(card, 'VZR')]
         associate (velocity => model%rigids(body)%velocity)

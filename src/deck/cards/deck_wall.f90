@@ -9,7 +9,7 @@ module deck_wall_m
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, report_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node_set
-  use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
+  use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning, where_text
   use deck_supports_m, only : mark_nodes_with_mass, mark_constrained, warn_of_nodes
   use deck_values_m, only : integer_of, real_of, reals_of, read_active_time, find_id, &
     refuse_duplicates
@@ -85,6 +85,7 @@ contains
       end do
     end if
     wall%nodes = pack([(k, k=1, model%mesh%n_node)], is_tracked)
+    wall%source = where_text(deck, card%line)
   end subroutine read_wall
 
   !> Read tail and head: a point of the wall and its normal.

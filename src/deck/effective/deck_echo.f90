@@ -150,7 +150,8 @@ contains
     character(:), allocatable :: text
 
     associate (material => model%materials(i))
-      text = 'material '//to_text(material%id)//': density '//to_text(material%density)//', E ' &
+      text = 'material '//to_text(material%id)//trim(merge(' in plane stress', '                ', &
+        material%is_plane_stress))//': density '//to_text(material%density)//', E ' &
         //to_text(material%young)//', nu '//to_text(material%poisson)//', K ' &
         //to_text(material%bulk)//', G '//to_text(material%shear)//', c ' &
         //to_text(material%sound_speed)

@@ -257,8 +257,11 @@ contains
       if (n /= 5) call set_error(scanner, 'STEP takes five arguments')
     case ('IF')
       if (n /= 4) call set_error(scanner, 'IF takes four arguments')
-    case default
+    case ('SIN', 'COS', 'TAN', 'ASIN', 'ACOS', 'ATAN', 'SQRT', 'EXP', 'LOG', 'LOG10', 'ABS', &
+      'INT', 'NINT')
       if (n /= 1) call set_error(scanner, word//' takes one argument')
+    case default
+      call set_error(scanner, 'there is no function '//word)
     end select
     if (.not. allocated(scanner%message)) call apply_function(scanner, word, arguments(:n), value)
   end subroutine parse_function
@@ -300,8 +303,6 @@ contains
       if (.not. a(4) > a(2)) call set_error(scanner, 'STEP(x, x0, h0, x1, h1) needs x1 above x0')
       s = min(max((a(1) - a(2))/max(a(4) - a(2), tiny(s)), 0.0_wp), 1.0_wp)
       value = a(3) + (a(5) - a(3))*s**2*(3.0_wp - 2.0_wp*s)
-    case default
-      call set_error(scanner, 'there is no function '//word)
     end select
     if (.not. ieee_is_finite(value)) call set_error(scanner, word//' is not defined there')
   end subroutine apply_function

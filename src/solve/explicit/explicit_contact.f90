@@ -13,8 +13,8 @@ module explicit_contact_m
   use law_state_m, only : energy_created, energy_lost, energy_limit_t
   use log_m, only : log_t, warn, write_log, to_text, percent
   use model_m, only : model_t, is_sheet
-  use node_motion_m, only : leap_t, predict_velocity, solve_rigids, damping_of
-  use rigid_state_m, only : rotation_terms, rotation_shift, velocity_of
+  use node_motion_m, only : leap_t, predict_velocity, solve_rigids
+  use rigid_state_m, only : rotation_terms, rotation_shift, velocity_of, damping_of
   use state_m, only : state_t
   use units_m, only : per_depth
   implicit none
@@ -318,7 +318,8 @@ contains
               is_free(motion%direction) = .false.
           end associate
         end do
-        rate = damping_of(state%rigids(body), damping + part_damping_rate(model, &
+        rate = damping_of(state%rigids(body), state%rigids(body)%displacement(3), damping &
+          + part_damping_rate(model, &
           model%rigids(body)%part, state%time))
         step%modes(:, :, step%n_mode + 1:step%n_mode + count(is_free)) = 0.0_wp
       end if

@@ -24,7 +24,8 @@ module explicit_report_m
   use monitor_m, only : monitor_t, write_due, record_energies, write_instant
   use ranks_m, only : share_error, broadcast_values
   use node_motion_m, only : solve_rigids, fill_rigids
-  use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, find_motion, damping_at
+  use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_bodies, find_motion, &
+    damping_at
   use snapshot_m, only : energy_ratio, snapshot_t
   use state_m, only : state_t
   use time_step_m, only : first_volume_change, first_step, largest_change, limit_approach, &
@@ -173,6 +174,7 @@ contains
           result%impulse = wall%impulse
           result%work = wall%work
           result%dissipated = wall%dissipated
+          result%displacement = wall%displacement
           result%n_active = count(wall%force > 0.0_wp)
         end associate
       end do
@@ -190,16 +192,8 @@ contains
     end if
     if (cycle%due%tables(table_spcforc)) &
       call fill_explicit_reactions(model, state, monitor%snapshot, held)
-    if (cycle%due%tables(table_rbdout) .and. allocated(monitor%snapshot%bodies)) then
-      do i = 1, size(monitor%snapshot%bodies)
-        associate (rigid => state%rigids(i), body => monitor%snapshot%bodies(i))
-          body%displacement = rigid%displacement
-          body%position = rigid%centre + rigid%displacement(1:2)
-          body%velocity = rigid%velocity + 0.5_wp*state%dt_before*rigid%acceleration
-          body%acceleration = rigid%acceleration
-        end associate
-      end do
-    end if
+    if (cycle%due%tables(table_rbdout)) call fill_bodies(state%rigids, 0.5_wp*state%dt_before, &
+      monitor%snapshot)
     call write_instant(model, cycle%due, state%dt, cycle%ratio, state, monitor, cycle%error)
     if (.not. allocated(cycle%error) .and. cycle%due%tables(table_glstat)) then
       call check_energy(model%controls, monitor%snapshot%energies, created_by_springs, cycle%error)

@@ -15,7 +15,7 @@ module load_work_m
   use loads_m, only : form_external_force, body_acceleration, damping_rate, is_active, &
     next_velocity, part_damping_rate
   use model_m, only : model_t
-  use node_motion_m, only : damping_of
+  use rigid_state_m, only : damping_of
   use snapshot_filling_m, only : damping_at
   use state_m, only : state_t
   implicit none
@@ -317,7 +317,8 @@ contains
         k => model%conditions%rigid_motions(i)%direction)
         old(i) = rigid%velocity(k)
         next(i) = rigid%next_velocity(k)
-        rate = damping_of(rigid, damping + part_damping_rate(model, part, state%time))
+        rate = damping_of(rigid, rigid%displacement(3), damping + part_damping_rate(model, part, &
+          state%time))
         reactions(i) = rigid%inertia(k)*((next(i) - old(i))/(0.5_wp*(state%dt + state%dt_before)) &
           - body(k) + 0.5_wp*rate(k)*(next(i) + old(i))) - rigid%force(k)
       end associate

@@ -232,11 +232,11 @@ contains
       associate (wall => model%walls(i), memory => state%walls(i))
         if (.not. wall%mass > 0.0_wp) cycle
         touching = sum(state%mass(wall%nodes), mask=memory%force > 0.0_wp)
-        if (touching >= wall%mass .and. .not. allocated(error)) call raise(error, 'wall ' &
-          //to_text(wall%id)//' of mass '//to_text(wall%mass)//' touches nodes of mass ' &
-          //to_text(touching)//' at time '//to_text(state%time)//'; a moving wall must be ' &
-          //'heavier than the nodes that it touches: refine the mesh there, or let it be a ' &
-          //'rigid body in contact (*MAT_RIGID)', status_run)
+        if (touching >= wall%mass .and. .not. allocated(error)) call raise(error, &
+          wall%source//': wall '//to_text(wall%id)//' of mass '//to_text(wall%mass) &
+          //' touches nodes of mass '//to_text(touching)//' at time '//to_text(state%time) &
+          //'; a moving wall must be heavier than the nodes that it touches: refine the mesh ' &
+          //'there, or let it be a rigid body in contact (*MAT_RIGID)', status_run)
         memory%velocity = memory%velocity - 0.5_wp*(state%dt_before + state%dt) &
           *sum(memory%force)/wall%mass
         memory%displacement = memory%displacement + state%dt*memory%velocity

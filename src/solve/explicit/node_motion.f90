@@ -13,14 +13,14 @@ module node_motion_m
   use layout_m, only : slot_part
   use loads_m, only : damping_rates, is_active, next_velocity, part_damping_rate
   use model_m, only : model_t
-  use rigid_state_m, only : rigid_state_t, rotation_terms, rotation_shift, velocity_of
+  use rigid_state_m, only : rotation_terms, rotation_shift, velocity_of, damping_of
   use snapshot_m, only : snapshot_t
   use state_m, only : state_t
   implicit none
   private
   public :: leap_t, make_leap, motion_factors, predict_velocity, move_tile_nodes, &
     move_special_nodes, &
-    move_damped_nodes, update_damping, solve_rigids, damping_of, move_rigids, fill_rigids
+    move_damped_nodes, update_damping, solve_rigids, move_rigids, fill_rigids
 
   !> Factors of one leap-frog step, common to all nodes.
   type :: leap_t
@@ -216,7 +216,8 @@ contains
           total = total + [force, arm(1)*force(2) - arm(2)*force(1)]
         end do
         rigid%force = total + rigid%load
-        rate = damping_of(rigid, damping + part_damping_rate(model, body%part, state%time))
+        rate = damping_of(rigid, rigid%displacement(3), damping + part_damping_rate(model, &
+          body%part, state%time))
         free = rigid%force/rigid%inertia + [state%body_acceleration, 0.0_wp]
         rigid%acceleration = (free - rate*rigid%velocity)/(1.0_wp + 0.5_wp*rate*state%dt_before)
         rigid%next_velocity = ((1.0_wp - 0.5_wp*rate*mean)*rigid%velocity + mean*free) &
@@ -241,23 +242,6 @@ contains
       end associate
     end do
   end subroutine solve_rigids
-
-  !> D of each degree of freedom. The rotation is damped by the forces -D m v on the nodes in their
-  !> current positions.
-  pure function damping_of(rigid, damping) result(rate)
-    type(rigid_state_t), intent(in) :: rigid
-    real(wp), intent(in) :: damping(2)
-    real(wp) :: rate(3)
-    real(wp) :: along_x
-
-    rate(1:2) = damping
-    rate(3) = damping(1)
-    if (.not. abs(damping(1) - damping(2)) > 0.0_wp) return
-    along_x = cos(rigid%displacement(3))**2*rigid%second(1) + &
-      sin(rigid%displacement(3))**2*rigid%second(2) &
-      - sin(2.0_wp*rigid%displacement(3))*rigid%second(3)
-    rate(3) = (damping(2)*along_x + damping(1)*(rigid%inertia(3) - along_x))/rigid%inertia(3)
-  end function damping_of
 
   !> Move all rigid bodies to u(n+1), and those of their nodes that the next cycle needs. The
   !> velocity of a node is its displacement over the step, as for all nodes: work is force times

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Equations of the implicit driver: free degrees of freedom first, then prescribed ones; fixed ones
-!> and nodes without elements have none. Prescribed displacement, velocity and acceleration over one
+!> Equations of the implicit driver: free degrees of freedom first, then prescribed ones, nodes
+!> before rigid bodies; fixed ones and nodes without elements have none, nodes of rigid bodies the
+!> numbers after all. Prescribed displacement, velocity and acceleration over one
 !> step (doc/theory/implicit.md, section 1).
 module equations_m
   use conditions_m, only : prescribed_motion_t, motion_velocity, motion_acceleration, &
@@ -9,19 +10,24 @@ module equations_m
   use curves_m, only : curve_t, curve_value, curve_integral
   use kinds_m, only : wp
   use model_m, only : model_t
+  use rigid_state_m, only : body_scales
   use sparse_m, only : sparse_t
   use state_m, only : state_t
   implicit none
   private
   public :: equations_t, number_equations, move_prescribed, free_entries, prescribed_step_t, &
-    prescribe_step, prescribe_start, list_changes, mean_slope, curve_moment
+    prescribe_step, prescribe_start, put_prescribed, list_changes, mean_slope, curve_moment
 
   !> Numbering for one step.
   type :: equations_t
     integer :: n_free = 0
     integer :: n = 0                        !! free and prescribed ones
     integer, allocatable :: number(:, :)    !! (2, n_node), 0 = none
-    integer, allocatable :: motion_of(:)    !! (n - n_free) index of the prescribed motion
+    integer, allocatable :: bodies(:, :)    !! (3, n_body) of rigid bodies: x, y and turn
+    integer, allocatable :: collected(:, :) !! (2, n_node) as `number`; nodes of rigid bodies have
+                                            !! numbers above n until the matrix is condensed
+    integer, allocatable :: motion_of(:)    !! (n - n_free) index of the prescribed motion; those of
+                                            !! rigid bodies follow those of nodes
   end type equations_t
 
   !> Share of a step below which two times are equal.
@@ -34,7 +40,7 @@ module equations_m
 
   !> Prescribed degrees of freedom of one step, in the order of their equations.
   type :: prescribed_step_t
-    real(wp), allocatable :: increment(:)    !! u(n+1) - u(n)
+    real(wp), allocatable :: increment(:)    !! u(n+1) - u(n) of the unknown
     real(wp), allocatable :: velocity(:)     !! v(n+1)
     real(wp), allocatable :: acceleration(:) !! a(n+1)
     real(wp), allocatable :: mean(:)         !! (v(n+1) - v(n))/dt, for the inertia force of the
@@ -49,30 +55,57 @@ contains
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: time
     type(equations_t), intent(out) :: equations
-    logical :: is_free(2, model%mesh%n_node)
-    integer :: i
+    integer :: at(2*model%mesh%n_node + 3*size(model%rigids)), i, k, n
 
     allocate (equations%number(2, model%mesh%n_node), source=0)
+    allocate (equations%bodies(3, size(model%rigids)), source=1)
     do i = 1, model%mesh%n_node
       if (state%mass(i) > 0.0_wp) equations%number(:, i) = 1
     end do
     do i = 1, size(model%conditions%fixed_nodes)
       equations%number(model%conditions%fixed_directions(i), model%conditions%fixed_nodes(i)) = 0
     end do
-    do i = 1, size(model%conditions%motions)
-      associate (prescribed => model%conditions%motions(i))
-        if (is_active(prescribed, time) .and. equations%number(prescribed%direction, &
-          prescribed%node) /= 0) equations%number(prescribed%direction, prescribed%node) = -i
-      end associate
+    do i = 1, size(model%rigids)
+      equations%number(:, model%rigids(i)%nodes) = 0
+      where (model%rigids(i)%is_fixed) equations%bodies(:, i) = 0
     end do
-    is_free = equations%number > 0
-    equations%motion_of = -pack(equations%number, equations%number < 0)
-    equations%n_free = count(is_free)
+    n = size(model%conditions%motions)
+    call mark_motions(model%conditions%motions, 0, equations%number)
+    call mark_motions(model%conditions%rigid_motions, n, equations%bodies)
+    at = [equations%number, equations%bodies]
+    equations%motion_of = -pack(at, at < 0)
+    equations%n_free = count(at > 0)
     equations%n = equations%n_free + size(equations%motion_of)
-    associate (number => equations%number, n_free => equations%n_free, n => equations%n)
-      number = unpack([(i, i=n_free + 1, n)], number < 0, number)
-      number = unpack([(i, i=1, n_free)], is_free, number)
+    associate (n_free => equations%n_free, n_nodal => size(equations%number))
+      at = unpack([(i, i=n_free + 1, equations%n)], at < 0, unpack([(i, i=1, n_free)], at > 0, at))
+      equations%number = reshape(at(:n_nodal), [2, model%mesh%n_node])
+      equations%bodies = reshape(at(n_nodal + 1:), [3, size(model%rigids)])
     end associate
+    equations%collected = equations%number
+    n = equations%n
+    do i = 1, size(model%rigids)
+      do k = 1, size(model%rigids(i)%nodes)
+        equations%collected(:, model%rigids(i)%nodes(k)) = [n + 1, n + 2]
+        n = n + 2
+      end do
+    end do
+
+  contains
+
+    !> Mark degrees of freedom whose motion is active by minus its index.
+    pure subroutine mark_motions(motions, before, numbers)
+      type(prescribed_motion_t), intent(in) :: motions(:)
+      integer, intent(in) :: before          !! motions before these
+      integer, intent(inout) :: numbers(:, :)
+      integer :: j
+
+      do j = 1, size(motions)
+        associate (number => numbers(motions(j)%direction, motions(j)%node))
+          if (is_active(motions(j), time) .and. number /= 0) number = -before - j
+        end associate
+      end do
+    end subroutine mark_motions
+
   end subroutine number_equations
 
   !> Move prescribed columns of the matrix to the right-hand side: b(free) -= K(free, prescribed) *
@@ -101,14 +134,31 @@ contains
     matrix%n = n_free
   end subroutine move_prescribed
 
-  !> Free entries of a nodal field.
-  pure function free_entries(equations, field) result(vector)
+  !> Free entries of a nodal field and of values of the rigid bodies.
+  pure function free_entries(equations, field, bodies) result(vector)
     type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: field(:, :) !! (2, n_node)
+    real(wp), intent(in) :: field(:, :)  !! (2, n_node)
+    real(wp), intent(in) :: bodies(:, :) !! (3, n_body)
     real(wp) :: vector(equations%n_free)
 
-    vector = pack(field, equations%number > 0 .and. equations%number <= equations%n_free)
+    vector = [pack(field, equations%number > 0 .and. equations%number <= equations%n_free), &
+      pack(bodies, equations%bodies > 0 .and. equations%bodies <= equations%n_free)]
   end function free_entries
+
+  !> Put values of the prescribed degrees of freedom into a field.
+  pure subroutine put_prescribed(numbers, n_free, values, field)
+    integer, intent(in) :: numbers(:, :) !! equations of the field
+    integer, intent(in) :: n_free
+    real(wp), intent(in) :: values(:)
+    real(wp), intent(inout) :: field(:, :)
+    integer :: i, k
+
+    do i = 1, size(numbers, 2)
+      do k = 1, size(numbers, 1)
+        if (numbers(k, i) > n_free) field(k, i) = values(numbers(k, i) - n_free)
+      end do
+    end do
+  end subroutine put_prescribed
 
   !> Prescribed motion from `state` to `time`. No motion starts or ends inside the step.
   pure subroutine prescribe_step(model, state, time, equations, prescribed)
@@ -117,23 +167,36 @@ contains
     real(wp), intent(in) :: time
     type(equations_t), intent(in) :: equations
     type(prescribed_step_t), intent(out) :: prescribed
-    real(wp) :: path(3)
-    integer :: i, n
+    real(wp) :: path(3), before(2) !! displacement and velocity at the start
+    real(wp) :: scales(3, size(state%rigids)), scale
+    integer :: i, n, n_nodal
 
     n = size(equations%motion_of)
+    n_nodal = size(model%conditions%motions)
+    scales = body_scales(state%rigids)
     allocate (prescribed%increment(n), prescribed%velocity(n), prescribed%acceleration(n), &
       prescribed%mean(n))
     do i = 1, n
-      associate (motion => model%conditions%motions(equations%motion_of(i)))
-        associate (v => state%motion(2 + motion%direction, motion%node))
-          path = follow_curve(model, motion, [state%time, time], &
-            state%motion(motion%direction, motion%node), v)
-          prescribed%increment(i) = path(1)
-          prescribed%velocity(i) = path(2)
-          prescribed%acceleration(i) = path(3)
-          prescribed%mean(i) = (path(2) - v)/(time - state%time)
-        end associate
+      associate (k => equations%motion_of(i))
+        if (k <= n_nodal) then
+          associate (motion => model%conditions%motions(k))
+            scale = 1.0_wp
+            before = state%motion([motion%direction, 2 + motion%direction], motion%node)
+            path = follow_curve(model, motion, [state%time, time], before(1), before(2))
+          end associate
+        else
+          associate (motion => model%conditions%rigid_motions(k - n_nodal))
+            scale = scales(motion%direction, motion%node)
+            before = [state%rigids(motion%node)%displacement(motion%direction), &
+              state%rigids(motion%node)%velocity(motion%direction)]
+            path = follow_curve(model, motion, [state%time, time], before(1), before(2))
+          end associate
+        end if
       end associate
+      prescribed%increment(i) = scale*path(1)
+      prescribed%velocity(i) = path(2)
+      prescribed%acceleration(i) = path(3)
+      prescribed%mean(i) = (path(2) - before(2))/(time - state%time)
     end do
   end subroutine prescribe_step
 
@@ -144,24 +207,42 @@ contains
     real(wp), intent(in) :: dt !! first step
     type(state_t), intent(inout) :: state
     integer :: i
-    real(wp) :: slope
 
     do i = 1, size(model%conditions%motions)
       associate (motion => model%conditions%motions(i))
-        if (.not. is_active(motion, 0.0_wp)) cycle
-        associate (curve => model%curves(motion%curve), k => motion%direction)
-          slope = motion%scale*mean_slope(curve, 0.0_wp, dt, [0.0_wp, motion%death])
-          select case (motion%kind)
-          case (motion_velocity)
-            state%acceleration(k, motion%node) = slope
-          case (motion_acceleration)
-            state%acceleration(k, motion%node) = motion%scale*curve_value(curve, 0.0_wp)
-          case (motion_displacement)
-            state%motion(2 + k, motion%node) = slope
-          end select
-        end associate
+        call start_path(motion, state%motion(2 + motion%direction, motion%node), &
+          state%acceleration(motion%direction, motion%node))
       end associate
     end do
+    do i = 1, size(model%conditions%rigid_motions)
+      associate (motion => model%conditions%rigid_motions(i))
+        call start_path(motion, state%rigids(motion%node)%velocity(motion%direction), &
+          state%rigids(motion%node)%acceleration(motion%direction))
+      end associate
+    end do
+
+  contains
+
+    !> Velocity and acceleration of one motion.
+    pure subroutine start_path(motion, velocity, acceleration)
+      type(prescribed_motion_t), intent(in) :: motion
+      real(wp), intent(inout) :: velocity, acceleration
+      real(wp) :: slope
+
+      if (.not. is_active(motion, 0.0_wp)) return
+      associate (curve => model%curves(motion%curve))
+        slope = motion%scale*mean_slope(curve, 0.0_wp, dt, [0.0_wp, motion%death])
+        select case (motion%kind)
+        case (motion_velocity)
+          acceleration = slope
+        case (motion_acceleration)
+          acceleration = motion%scale*curve_value(curve, 0.0_wp)
+        case (motion_displacement)
+          velocity = slope
+        end select
+      end associate
+    end subroutine start_path
+
   end subroutine prescribe_start
 
   !> Displacement over the step, velocity and acceleration at its end. Velocity and acceleration
@@ -254,7 +335,8 @@ contains
     integer :: i
 
     associate (conditions => model%conditions)
-      changes = [conditions%motions%birth, conditions%motions%death]
+      changes = [conditions%motions%birth, conditions%motions%death, &
+        conditions%rigid_motions%birth, conditions%rigid_motions%death]
       if (.not. model%controls%implicit%is_automatic) return
       changes = [changes, conditions%pressures%arrival, model%contacts%birth, &
         model%contacts%death]
@@ -264,7 +346,9 @@ contains
           .and. controls%end_time < most_plots*interval) &
           changes = [changes, [(i*interval, i=1, int(controls%end_time/interval))]]
       end associate
-      used = [conditions%motions%curve, conditions%nodal_loads%curve, conditions%body_loads%curve]
+      used = [conditions%motions%curve, conditions%rigid_motions%curve, &
+        conditions%nodal_loads%curve, conditions%body_loads%curve]
+      if (allocated(conditions%rigid_loads)) used = [used, conditions%rigid_loads%curve]
       if (allocated(conditions%damping)) used = [used, conditions%damping%curve]
       if (allocated(conditions%part_damping)) used = [used, conditions%part_damping%curve]
       do i = 1, size(model%curves)

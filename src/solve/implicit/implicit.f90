@@ -10,44 +10,43 @@ module implicit_m
   use nodal_forces_m, only : count_step
   use contact_state_m, only : has_offsets
   use contacts_m, only : breaks
-  use controls_m, only : boundary_motion, group_nodes
   use cut_forces_m, only : store_cut_chunks
   use spring_gaps_m, only : update_offsets
   use element_mass_m, only : mass_times, sum_part_motion
   use element_state_m, only : add_part_energies
-  use equations_m, only : number_equations, prescribe_step, equations_t
+  use equations_m, only : number_equations, prescribe_step
   use errors_m, only : error_t, raise, status_run
   use friction_m, only : has_slipped
   use health_m, only : check_static_step, limit_point_advice, check_energy, check_ratio, &
     check_radii, &
     warn_of_energies, warn_of_contact_energy, created_by_forces, energy_unaccounted, &
     scheme_dissipation
-  use history_filling_m, only : fill_reactions, form_loads
+  use history_filling_m, only : fill_reactions
   use history_tables_m, only : table_matsum, table_spcforc, table_bndout, table_nodfor, &
-    table_secforc
-  use implicit_forces_m, only : trial_t, start_trial, net_force, step_t, &
-    new_acceleration, new_velocity, cut_sections
+    table_secforc, table_rbdout
+  use implicit_forces_m, only : trial_t, start_trial, net_force, net_body_force, step_t, rates_t, &
+    find_rates, cut_sections
   use implicit_start_m, only : implicit_memory_t, begin_steps, plan_next, has_ended, &
     step_control_t, plan_step, grow_step, cut_step
+  use implicit_works_m, only : reactions_work, body_reactions_work, add_boundary_work, find_forces
   use interface_m, only : break_at_end
   use kinds_m, only : wp
   use law_state_m, only : tie_memory_t
-  use loads_m, only : damping_rates, is_active
+  use loads_m, only : damping_rates
   use log_m, only : write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, record_energies, write_instant, output_reach
-  use newton_m, only : outcome_t, find_equilibrium
+  use newton_m, only : outcome_t, find_equilibrium, freedom_words
   use progress_m, only : update_progress
   use requests_m, only : find_early_end, requests_t, read_requests
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
-  use snapshot_filling_m, only : fill_energies, fill_parts
+  use snapshot_filling_m, only : fill_energies, fill_parts, fill_bodies
   use snapshot_m, only : energy_ratio
   use state_m, only : state_t
   implicit none
   private
-  public :: advance_implicit, report_step, reactions_work, absorbed_energy, released_energy, &
-    add_boundary_work
+  public :: advance_implicit
 
   !> Energy ratio above which a failure is attributed to growing energy.
   real(wp), parameter :: gained = 1.1_wp
@@ -228,11 +227,13 @@ contains
     type(step_t), intent(inout) :: step
     type(trial_t), intent(inout) :: attempt
     type(trial_t), intent(inout) :: trial    !! of the previous state in, of the new one out
-    real(wp), allocatable :: acceleration(:, :), velocity(:, :)
+    type(rates_t) :: rates
+    real(wp) :: bodies(3, size(state%rigids)) !! work of their prescribed motions
     integer :: i
 
     state%external_work = state%external_work + 0.5_wp*sum((trial%external + attempt%external) &
-      *attempt%motion(3:4, :))
+      *attempt%motion(3:4, :)) + 0.5_wp*sum((trial%body_load + attempt%body_load) &
+      *(attempt%bodies - trial%bodies))
     do i = 1, size(model%contacts)
       associate (memory => attempt%contacts(i))
         call count_step(attempt%motion, state%contacts(i), memory)
@@ -243,21 +244,30 @@ contains
       end associate
     end do
     if (step%is_dynamic) then
-      acceleration = new_acceleration(state, step, attempt)
-      velocity = new_velocity(state, step, acceleration)
+      call find_rates(model, state, step, attempt, rates)
       if (allocated(attempt%damping)) then
-        attempt%damping = mass_times(model, velocity, damping_rates(model, step%time))
+        attempt%damping = mass_times(model, state%mass, rates%velocity, damping_rates(model, &
+          step%time))
         state%damping_work = state%damping_work + 0.5_wp*sum((trial%damping + attempt%damping) &
           *attempt%motion(3:4, :))
       end if
     end if
     state%external_work = state%external_work + reactions_work(model, step%equations, trial, &
-      attempt, state, velocity)
-    call add_boundary_work(model, trial, attempt, step%time, velocity, state)
+      attempt, state, rates%velocity)
+    bodies = body_reactions_work(step, net_body_force(model, state, attempt), attempt%bodies &
+      - trial%bodies, rates, state%rigids)
+    state%external_work = state%external_work + sum(bodies)
+    call add_boundary_work(model, trial, attempt, step%time, rates%velocity, bodies, state)
     if (step%is_dynamic) then
-      state%motion(3:4, :) = velocity
-      state%acceleration = acceleration
+      state%motion(3:4, :) = rates%velocity
+      state%acceleration = rates%acceleration
     end if
+    do i = 1, size(state%rigids)
+      state%rigids(i)%displacement = attempt%bodies(:, i)
+      if (.not. step%is_dynamic) cycle
+      state%rigids(i)%velocity = rates%body_velocity(:, i)
+      state%rigids(i)%acceleration = rates%body_acceleration(:, i)
+    end do
     trial = attempt
     ! Element values before the step, for the forces of cross sections.
     if (allocated(state%cut_force)) call store_cut_chunks(model, state%elements, trial%before)
@@ -265,6 +275,7 @@ contains
     state%elements = attempt%elements
     state%contacts = attempt%contacts
     step%old_force = net_force(attempt)
+    step%old_bodies = net_body_force(model, state, attempt)
     state%time = step%time
     state%dt_before = step%dt
     state%cycle = state%cycle + 1
@@ -277,14 +288,12 @@ contains
     type(step_t), intent(in) :: step
     type(outcome_t), intent(in) :: outcome
     type(error_t), allocatable, intent(out) :: error
-    integer :: freedom(2) !! direction and node
 
     if (outcome%singular_equation > 0) then
-      freedom = findloc(step%equations%number, outcome%singular_equation)
-      call raise(error, 'the stiffness is singular at time '//to_text(state%time)//': node ' &
-        //to_text(model%mesh%node_id(freedom(2)))//' is free to move in ' &
-        //merge('x', 'y', freedom(1) == 1)//'; add constraints, contact or inertia (IMASS 1)', &
-        status_run)
+      call raise(error, 'the stiffness is singular at time '//to_text(state%time)//': ' &
+        //freedom_words(model, step%equations, outcome%singular_equation, &
+        ' is free to move in x', ' is free to move in y', ' is free to turn') &
+        //'; add constraints, contact or inertia (IMASS 1)', status_run)
     else
       call raise(error, 'no equilibrium at time '//to_text(step%time)//' with the step ' &
         //to_text(step%dt)//': '//outcome%reason//'; the last converged state is that of time ' &
@@ -324,19 +333,24 @@ contains
       shot%velocity = state%motion(3:4, :)
       shot%acceleration = state%acceleration
       call fill_energies(model, state, [0.0_wp, 0.0_wp], shot)
-      shot%energies%kinetic = 0.5_wp*sum(shot%velocity*mass_times(model, shot%velocity))
+      shot%energies%kinetic = 0.5_wp*sum(shot%velocity*mass_times(model, state%mass, &
+        shot%velocity))
       call record_energies(model, .true., state, monitor)
       if (due%tables(table_matsum)) then
         call fill_parts(model, state, shot)
         call sum_part_motion(model, shot%velocity, kinetic, momentum)
-        shot%parts%kinetic = kinetic
-        shot%parts%momentum(1) = momentum(1, :)
-        shot%parts%momentum(2) = momentum(2, :)
+        where (.not. model%materials(model%parts%material)%is_rigid)
+          shot%parts%kinetic = kinetic
+          shot%parts%momentum(1) = momentum(1, :)
+          shot%parts%momentum(2) = momentum(2, :)
+        end where
       end if
       if (due%tables(table_spcforc)) call fill_reactions(model, &
-        force + mass_times(model, shot%acceleration), shot)
+        force + mass_times(model, state%mass, shot%acceleration), shot)
       if (any(due%tables([table_bndout, table_nodfor]))) call find_forces(model, &
-        force + mass_times(model, shot%acceleration), memory%trial%internal, state)
+        force + mass_times(model, state%mass, shot%acceleration), memory%step%old_bodies, &
+        memory%trial, state)
+      if (due%tables(table_rbdout)) call fill_bodies(state%rigids, 0.0_wp, shot)
       if (due%tables(table_secforc)) call cut_sections(model, memory%trial, state)
       memory%ratio = energy_ratio(shot%energies)
       call write_instant(model, due, dt, memory%ratio, state, monitor, error)
@@ -383,91 +397,5 @@ contains
 
     spent = merge(0.0_wp, max(0.0_wp, state%initial_energy), step%is_dynamic)
   end function released_energy
-
-  !> Work of the reactions of prescribed degrees of freedom: of inertia the change of momentum times
-  !> mean velocity, which equals the gain of kinetic energy also in impacts; of other forces by the
-  !> trapezoidal rule.
-  function reactions_work(model, equations, before, after, state, velocity) result(work)
-    type(model_t), intent(in) :: model
-    type(equations_t), intent(in) :: equations
-    type(trial_t), intent(in) :: before, after
-    type(state_t), intent(in) :: state                  !! at the start of the step
-    real(wp), allocatable, intent(in) :: velocity(:, :) !! (2, n_node) v(n+1); not allocated in
-                                                        !! statics
-    real(wp) :: work
-
-    work = 0.0_wp
-    if (equations%n == equations%n_free) return
-    work = 0.5_wp*sum((net_force(before) + net_force(after))*after%motion(3:4, :), &
-      equations%number > equations%n_free)
-    if (allocated(velocity)) work = work + 0.5_wp*sum(mass_times(model, velocity &
-      - state%motion(3:4, :))*(state%motion(3:4, :) + velocity), &
-      equations%number > equations%n_free)
-  end function reactions_work
-
-  !> Add the work of a step in bndout and nodfor: loads and reactions by the trapezoidal rule,
-  !> inertia by the change of momentum times mean velocity.
-  subroutine add_boundary_work(model, before, after, time, velocity, state)
-    type(model_t), intent(in) :: model
-    type(trial_t), intent(in) :: before, after
-    real(wp), intent(in) :: time                        !! end of the step, s
-    real(wp), allocatable, intent(in) :: velocity(:, :) !! (2, n_node) v(n+1); not allocated in
-                                                        !! statics
-    type(state_t), intent(inout) :: state               !! at the start of the step
-    real(wp), allocatable :: power(:, :), previous(:, :)
-    integer :: i
-
-    if (allocated(state%boundary_work)) then
-      previous = state%boundary_force
-      call form_loads(model, state%motion, state%time, previous)
-      call form_loads(model, after%motion, time, state%boundary_force)
-      power = 0.5_wp*(net_force(before) + net_force(after))*after%motion(3:4, :)
-      if (allocated(velocity)) power = power + 0.5_wp*mass_times(model, velocity &
-        - state%motion(3:4, :))*(velocity + state%motion(3:4, :))
-      associate (rows => model%controls%output%boundaries, motions => model%conditions%motions, &
-        work => state%boundary_work)
-        do i = 1, size(rows%where)
-          if (rows%condition(i) == boundary_motion) cycle
-          work(i) = work(i) + 0.5_wp*sum((previous(1:2, i) + state%boundary_force(1:2, i)) &
-            *after%motion(3:4, rows%where(i)))
-        end do
-        do i = 1, size(motions)
-          if (is_active(motions(i), 0.5_wp*(state%time + time))) work(rows%motion_rows(i)) &
-            = work(rows%motion_rows(i)) + power(motions(i)%direction, motions(i)%node)
-        end do
-      end associate
-    end if
-    if (.not. allocated(state%group_work)) return
-    associate (nodes => group_nodes(model%controls%output%force_groups))
-      state%group_work = state%group_work + 0.5_wp*sum((before%internal(:, nodes) &
-        + after%internal(:, nodes))*after%motion(3:4, nodes), 1)
-    end associate
-  end subroutine add_boundary_work
-
-  !> Forces of bndout and nodfor at the present instant, also where a restarted run is the first to
-  !> ask for them.
-  subroutine find_forces(model, reaction, internal, state)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: reaction(:, :)   !! (2, n_node) of all degrees of freedom
-    real(wp), intent(in) :: internal(:, :)   !! (2, n_node) divergence of stress
-    type(state_t), intent(inout) :: state
-    integer :: i
-
-    if (allocated(state%boundary_work)) then
-      call form_loads(model, state%motion, state%time, state%boundary_force)
-      associate (rows => model%controls%output%boundaries%motion_rows, &
-        motions => model%conditions%motions)
-        do i = 1, size(motions)
-          state%boundary_force(motions(i)%direction, rows(i)) = 0.0_wp
-        end do
-        do i = 1, size(motions)
-          if (is_active(motions(i), state%time)) state%boundary_force(motions(i)%direction, &
-            rows(i)) = reaction(motions(i)%direction, motions(i)%node)
-        end do
-      end associate
-    end if
-    if (allocated(state%group_work)) state%group_force = internal(:, &
-      group_nodes(model%controls%output%force_groups))
-  end subroutine find_forces
 
 end module implicit_m

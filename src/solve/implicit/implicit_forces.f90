@@ -14,19 +14,22 @@ module implicit_forces_m
     sum_special_forces
   use element_mass_m, only : mass_times, add_mass
   use element_stiffness_m, only : add_stiffness
-  use equations_m, only : equations_t, prescribed_step_t
+  use equations_m, only : equations_t, prescribed_step_t, free_entries, put_prescribed
   use loads_m, only : form_external_force, body_acceleration, damping_rates
   use interface_m, only : evaluate_contact
   use kinds_m, only : wp
   use model_m, only : model_t
   use packed_buffer_m, only : packed_buffer_t
+  use rigid_equations_m, only : place_rigids, spread_rates, resultants, form_rigid_loads, &
+    condense_rigids, add_rigid_diagonal
+  use rigid_state_m, only : body_scales, damping_of
   use sparse_m, only : sparse_t, start_matrix, add_block
   use state_m, only : state_t
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: trial_t, start_trial, assemble_forces, net_force, trial_fault, &
-    cut_sections, step_t, assemble_residual, assemble_tangent, new_acceleration, new_velocity
+  public :: trial_t, start_trial, assemble_forces, net_force, net_body_force, trial_fault, &
+    cut_sections, step_t, assemble_residual, assemble_tangent, rates_t, find_rates
 
   !> Step of the kernels: motion contains increments in place of velocities.
   real(wp), parameter :: unit_step = 1.0_wp
@@ -34,6 +37,8 @@ module implicit_forces_m
   !> Forces and element state of a trial displacement from a committed state.
   type, extends(visited_t) :: trial_t
     real(wp), allocatable :: motion(:, :)   !! (4, n_node) u, and u minus the committed u
+    real(wp), allocatable :: bodies(:, :)   !! (3, n_body) displacement and turn of rigid bodies
+    real(wp), allocatable :: body_load(:, :) !! (3, n_body) forces and moments on them
     type(block_state_t) :: elements
     type(contact_state_t), allocatable :: contacts(:)
     real(wp), allocatable :: internal(:, :) !! (2, n_node) divergence of stress
@@ -55,6 +60,7 @@ module implicit_forces_m
     logical :: is_dynamic = .false.
     real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, gamma = 0.5_wp, beta = 0.25_wp
     real(wp), allocatable :: old_force(:, :) !! (2, n_node) `net_force` at its start
+    real(wp), allocatable :: old_bodies(:, :) !! (3, n_body) `net_body_force` at its start
     type(equations_t) :: equations
     logical :: searches = .false.      !! line search
     logical :: began_negative = .false. !! odd number of negative pivots at its start
@@ -64,6 +70,12 @@ module implicit_forces_m
     procedure :: visit => visit_step
   end type step_t
 
+  !> v(n+1) and a(n+1).
+  type :: rates_t
+    real(wp), allocatable :: velocity(:, :), acceleration(:, :) !! (2, n_node)
+    real(wp), allocatable :: body_velocity(:, :), body_acceleration(:, :) !! (3, n_body)
+  end type rates_t
+
 contains
 
   !> Trial at the committed state.
@@ -71,7 +83,13 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(trial_t), intent(out) :: trial
+    integer :: i
 
+    allocate (trial%bodies(3, size(state%rigids)), trial%body_load(3, size(state%rigids)), &
+      source=0.0_wp)
+    do i = 1, size(state%rigids)
+      trial%bodies(:, i) = state%rigids(i)%displacement
+    end do
     allocate (trial%motion(4, model%mesh%n_node), trial%internal(2, model%mesh%n_node), &
       trial%contact(2, model%mesh%n_node), trial%external(2, model%mesh%n_node), source=0.0_wp)
     if (allocated(model%conditions%damping) .or. allocated(model%conditions%part_damping)) &
@@ -80,7 +98,7 @@ contains
     trial%motion(1:2, :) = state%motion(1:2, :)
   end subroutine start_trial
 
-  !> Forces at the displacement in `trial%motion(1:2)`, loads at `time`.
+  !> Forces at the displacement in `trial%motion(1:2)` and `trial%bodies`, loads at `time`.
   subroutine assemble_forces(model, state, time, is_first, clock, trial)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state      !! committed
@@ -92,6 +110,7 @@ contains
     real(wp) :: body(2)
     integer :: i
 
+    call place_rigids(model, state%rigids, trial%bodies, trial%motion)
     trial%motion(3:4, :) = trial%motion(1:2, :) - state%motion(1:2, :)
     ! Element forces from the committed history.
     trial%elements = state%elements
@@ -116,8 +135,10 @@ contains
     call form_external_force(model, trial%motion, time, trial%external)
     if (size(model%conditions%body_loads) > 0) then
       body = body_acceleration(model%conditions, model%curves, time)
-      trial%external = trial%external + mass_times(model, spread(body, 2, model%mesh%n_node))
+      trial%external = trial%external + mass_times(model, state%mass, spread(body, 2, &
+        model%mesh%n_node))
     end if
+    trial%body_load = form_rigid_loads(model, time)
     call lap(clock, phase_nodes)
   end subroutine assemble_forces
 
@@ -142,6 +163,16 @@ contains
     if (allocated(trial%damping)) force = force + trial%damping
   end function net_force
 
+  !> Net force and moment of rigid bodies, from the forces on their nodes and their own loads.
+  pure function net_body_force(model, state, trial) result(force)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(trial_t), intent(in) :: trial
+    real(wp) :: force(3, size(model%rigids))
+
+    force = resultants(model, state%rigids, trial%bodies, net_force(trial)) - trial%body_load
+  end function net_body_force
+
   !> Fault of a trial in words; empty where all volumes are positive and all forces finite.
   pure function trial_fault(trial) result(fault)
     type(trial_t), intent(in) :: trial
@@ -149,8 +180,8 @@ contains
 
     fault = ''
     if (.not. minval(trial%elements%volume_limit) > 0.0_wp) then
-      fault = 'an element has a negative volume'
-    else if (.not. sum(abs(trial%external)) <= huge(1.0_wp)) then
+      fault = 'an element has a negative volume, or no thickness in plane stress'
+    else if (.not. sum(abs(trial%external)) + sum(abs(trial%body_load)) <= huge(1.0_wp)) then
       fault = 'the loads are not finite'
     else if (.not. sum(abs(trial%internal)) + sum(abs(trial%contact)) <= huge(1.0_wp)) then
       fault = 'the forces are not finite'
@@ -166,6 +197,7 @@ contains
     call visitor%visit('contact', self%contact)
     call visitor%visit('external', self%external)
     call visitor%visit('damping', self%damping)
+    call visitor%visit('body_load', self%body_load)
   end subroutine visit_trial
 
   !> R = M A + (1 - alpha_f) f(n+1) + alpha_f f(n) with f = f_int - f_contact - f_ext
@@ -177,46 +209,90 @@ contains
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
     type(trial_t), intent(in) :: trial
-    real(wp), allocatable :: residual(:, :) !! (2, n_node)
-    real(wp), allocatable :: acceleration(:, :)
+    real(wp) :: residual(step%equations%n_free)
+    real(wp), allocatable :: force(:, :), bodies(:, :)
+    type(rates_t) :: rates
+    integer :: i
 
-    residual = trial%internal - trial%contact - trial%external
-    if (.not. step%is_dynamic) return
-    acceleration = new_acceleration(state, step, trial)
-    if (allocated(trial%damping)) residual = residual + mass_times(model, &
-      new_velocity(state, step, acceleration), damping_rates(model, step%time))
-    acceleration = (1.0_wp - step%alpha_m)*acceleration + step%alpha_m*state%acceleration
-    acceleration = unpack(step%prescribed%mean, step%equations%number &
-      > step%equations%n_free, acceleration)
-    residual = (1.0_wp - step%alpha_f)*residual + step%alpha_f*step%old_force &
-      + mass_times(model, acceleration)
+    force = trial%internal - trial%contact - trial%external
+    if (step%is_dynamic) then
+      call find_rates(model, state, step, trial, rates)
+      if (allocated(trial%damping)) force = force + mass_times(model, state%mass, rates%velocity, &
+        damping_rates(model, step%time))
+    end if
+    bodies = resultants(model, state%rigids, trial%bodies, force) - trial%body_load
+    if (step%is_dynamic) then
+      rates%acceleration = (1.0_wp - step%alpha_m)*rates%acceleration &
+        + step%alpha_m*state%acceleration
+      call put_prescribed(step%equations%number, step%equations%n_free, step%prescribed%mean, &
+        rates%acceleration)
+      force = (1.0_wp - step%alpha_f)*force + step%alpha_f*step%old_force &
+        + mass_times(model, state%mass, rates%acceleration)
+      do i = 1, size(state%rigids)
+        associate (rigid => state%rigids(i))
+          bodies(:, i) = (1.0_wp - step%alpha_f)*bodies(:, i) + step%alpha_f*step%old_bodies(:, i) &
+            + rigid%inertia*((1.0_wp - step%alpha_m)*rates%body_acceleration(:, i) &
+            + step%alpha_m*rigid%acceleration)
+        end associate
+      end do
+    end if
+    residual = free_entries(step%equations, force, bodies/body_scales(state%rigids))
   end function assemble_residual
 
-  !> a(n+1): Newmark's formulas from the displacement of the trial, or the curves.
-  pure function new_acceleration(state, step, trial) result(acceleration)
+  !> v(n+1) and a(n+1): Newmark's formulas from the displacement of the trial, or the curves; nodes
+  !> of rigid bodies follow these.
+  subroutine find_rates(model, state, step, trial, rates)
+    type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
     type(trial_t), intent(in) :: trial
-    real(wp) :: acceleration(2, size(state%motion, 2))
+    type(rates_t), intent(out) :: rates
+    integer :: i
 
-    acceleration = (trial%motion(3:4, :) - step%dt*state%motion(3:4, :))/(step%beta*step%dt**2) &
-      - (0.5_wp/step%beta - 1.0_wp)*state%acceleration
-    acceleration = unpack(step%prescribed%acceleration, step%equations%number &
-      > step%equations%n_free, acceleration)
-  end function new_acceleration
+    rates%acceleration = newmark_acceleration(step, trial%motion(3:4, :), state%motion(3:4, :), &
+      state%acceleration)
+    rates%velocity = newmark_velocity(step, state%motion(3:4, :), state%acceleration, &
+      rates%acceleration)
+    allocate (rates%body_velocity(3, size(state%rigids)), &
+      rates%body_acceleration(3, size(state%rigids)))
+    do i = 1, size(state%rigids)
+      associate (rigid => state%rigids(i))
+        rates%body_acceleration(:, i) = newmark_acceleration(step, trial%bodies(:, i) &
+          - rigid%displacement, rigid%velocity, rigid%acceleration)
+        rates%body_velocity(:, i) = newmark_velocity(step, rigid%velocity, rigid%acceleration, &
+          rates%body_acceleration(:, i))
+      end associate
+    end do
+    associate (number => step%equations%number, bodies => step%equations%bodies, &
+      n_free => step%equations%n_free, given => step%prescribed)
+      call put_prescribed(number, n_free, given%velocity, rates%velocity)
+      call put_prescribed(number, n_free, given%acceleration, rates%acceleration)
+      call put_prescribed(bodies, n_free, given%velocity, rates%body_velocity)
+      call put_prescribed(bodies, n_free, given%acceleration, rates%body_acceleration)
+    end associate
+    call spread_rates(model, state%rigids, trial%bodies, rates%body_velocity, &
+      rates%body_acceleration, rates%velocity, rates%acceleration)
+  end subroutine find_rates
+
+  !> a(n+1) by Newmark's formula.
+  elemental function newmark_acceleration(step, increment, velocity, acceleration) result(next)
+    type(step_t), intent(in) :: step
+    real(wp), intent(in) :: increment              !! u(n+1) - u(n)
+    real(wp), intent(in) :: velocity, acceleration !! v(n), a(n)
+    real(wp) :: next
+
+    next = (increment - step%dt*velocity)/(step%beta*step%dt**2) - (0.5_wp/step%beta - 1.0_wp) &
+      *acceleration
+  end function newmark_acceleration
 
   !> v(n+1) likewise.
-  pure function new_velocity(state, step, acceleration) result(velocity)
-    type(state_t), intent(in) :: state
+  elemental function newmark_velocity(step, velocity, before, after) result(next)
     type(step_t), intent(in) :: step
-    real(wp), intent(in) :: acceleration(:, :) !! a(n+1)
-    real(wp) :: velocity(2, size(state%motion, 2))
+    real(wp), intent(in) :: velocity, before, after !! v(n), a(n), a(n+1)
+    real(wp) :: next
 
-    velocity = state%motion(3:4, :) + step%dt*((1.0_wp - step%gamma)*state%acceleration &
-      + step%gamma*acceleration)
-    velocity = unpack(step%prescribed%velocity, step%equations%number > step%equations%n_free, &
-      velocity)
-  end function new_velocity
+    next = velocity + step%dt*((1.0_wp - step%gamma)*before + step%gamma*after)
+  end function newmark_velocity
 
   !> dR/du(n+1), not compressed. Inertia and damping of prescribed degrees of freedom do not depend
   !> on u, so their columns hold stiffness alone.
@@ -228,12 +304,14 @@ contains
     type(clock_t), intent(inout) :: clock
     type(sparse_t), intent(inout) :: matrix
     integer :: columns(2, model%mesh%n_node), i
+    real(wp) :: factors(3, size(model%rigids)), rates(2, size(model%parts) + 1)
 
     call start_matrix(matrix, step%equations%n)
-    call add_stiffness(model, trial%motion, 1.0_wp, state%elements, step%equations%number, matrix)
+    call add_stiffness(model, trial%motion, 1.0_wp, state%elements, step%equations%collected, &
+      matrix)
     call lap(clock, phase_elements)
     do i = 1, size(model%contacts)
-      call add_contact_stiffness(model%contacts(i), trial%contacts(i), step%equations%number, &
+      call add_contact_stiffness(model%contacts(i), trial%contacts(i), step%equations%collected, &
         matrix)
       call lap(clock, phase_contact_force)
       call lap_interface(clock, i)
@@ -242,12 +320,24 @@ contains
       call add_pressure_stiffness(model, model%conditions%pressures(i), trial%motion, step%time, &
         step%equations, matrix)
     end do
+    call condense_rigids(model, state%rigids, trial%bodies, trial%internal - trial%contact &
+      - trial%external, step%equations, matrix)
     if (.not. step%is_dynamic) return
     matrix%values(:matrix%n_entry) = (1.0_wp - step%alpha_f)*matrix%values(:matrix%n_entry)
     columns = merge(step%equations%number, 0, step%equations%number <= step%equations%n_free)
     call add_mass(model, (1.0_wp - step%alpha_m)/(step%beta*step%dt**2), columns, matrix)
-    if (allocated(trial%damping)) call add_mass(model, (1.0_wp - step%alpha_f)*step%gamma &
-      /(step%beta*step%dt), columns, matrix, damping_rates(model, step%time))
+    factors = (1.0_wp - step%alpha_m)/(step%beta*step%dt**2)
+    if (allocated(trial%damping)) then
+      rates = damping_rates(model, step%time)
+      associate (factor => (1.0_wp - step%alpha_f)*step%gamma/(step%beta*step%dt))
+        call add_mass(model, factor, columns, matrix, rates)
+        do i = 1, size(model%rigids)
+          factors(:, i) = factors(:, i) + factor*damping_of(state%rigids(i), trial%bodies(3, i), &
+            rates(:, model%rigids(i)%part))
+        end do
+      end associate
+    end if
+    call add_rigid_diagonal(state%rigids, factors, step%equations, matrix)
   end subroutine assemble_tangent
 
   !> Minus the derivative of a pressure load with respect to the displacement of its edge; in
@@ -284,7 +374,7 @@ contains
         end associate
       end do
     end if
-    rows = [equations%number(:, load%nodes(1)), equations%number(:, load%nodes(2))]
+    rows = [equations%collected(:, load%nodes(1)), equations%collected(:, load%nodes(2))]
     call add_block(matrix, rows, rows, block)
   end subroutine add_pressure_stiffness
 

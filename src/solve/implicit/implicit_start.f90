@@ -14,8 +14,8 @@ module implicit_start_m
   use element_mass_m, only : add_mass, mass_times
   use equations_m, only : equations_t, number_equations, free_entries, prescribe_start, list_changes
   use errors_m, only : error_t, raise, status_run
-  use implicit_forces_m, only : trial_t, start_trial, net_force, cut_sections, assemble_forces, &
-    step_t
+  use implicit_forces_m, only : trial_t, start_trial, net_force, net_body_force, cut_sections, &
+    assemble_forces, step_t
   use kinds_m, only : wp
   use friction_m, only : has_decay
   use linear_solver_m, only : report_t, solve_linear
@@ -26,6 +26,8 @@ module implicit_start_m
   use restart_file_m, only : close_restart
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
+  use rigid_equations_m, only : spread_rates, add_rigid_diagonal
+  use rigid_state_m, only : body_scales
   use sparse_m, only : sparse_t, start_matrix, compress_matrix
   use state_m, only : state_t
   use visitor_m, only : visited_t, visitor_t
@@ -199,6 +201,7 @@ contains
       call close_restart(monitor%restarts%source, error)
       if (allocated(error)) return
       memory%step%old_force = net_force(memory%trial)
+      memory%step%old_bodies = net_body_force(model, state, memory%trial)
       ! The end time may have been reduced within a whole step.
       memory%control%target = min(memory%control%target, memory%control%end_time)
       last = has_ended(model, state, memory%control)
@@ -267,7 +270,7 @@ contains
       undeformed = state%contacts(i)
       undeformed%positions(1:2, :) = model%mesh%coordinates(:, undeformed%nodes)
       undeformed%positions(3:4, :) = 0.0_wp
-      associate (ratio => contact_ratios(model%contacts(i), state%mass, undeformed), &
+      associate (ratio => contact_ratios(model%contacts(i), state%contact_mass, undeformed), &
         n => undeformed%n_slave)
         state%contacts(i)%scratch%lag = 2.0_wp*of_stuck/sqrt(maxval(ratio(:n)) &
           + maxval(ratio(n + 1:)))
@@ -290,6 +293,9 @@ contains
       call prescribe_start(model, dt, state)
     else
       state%motion(3:4, :) = 0.0_wp
+      do i = 1, size(state%rigids)
+        state%rigids(i)%velocity = 0.0_wp
+      end do
     end if
     call start_trial(model, state, memory%trial)
     call assemble_forces(model, state, 0.0_wp, .false., monitor%clock, memory%trial)
@@ -302,14 +308,16 @@ contains
       state%contacts(i)%energy = state%contacts(i)%monitor%stored
     end do
     if (allocated(memory%trial%damping)) memory%trial%damping = mass_times(model, &
-      state%motion(3:4, :), damping_rates(model, 0.0_wp))
+      state%mass, state%motion(3:4, :), damping_rates(model, 0.0_wp))
     memory%step%old_force = net_force(memory%trial)
+    memory%step%old_bodies = net_body_force(model, state, memory%trial)
     if (memory%step%is_dynamic) call find_first_acceleration(model, monitor, memory%step, state, &
       error)
     call lap(monitor%clock, phase_solver)
   end subroutine start_implicit
 
-  !> Solve M a(0) = -f(0) on the free degrees of freedom, with the accelerations of prescribed ones.
+  !> Solve M a(0) = -f(0) on the free degrees of freedom, with the accelerations of prescribed ones;
+  !> the nodes of rigid bodies follow.
   subroutine find_first_acceleration(model, monitor, step, state, error)
     type(model_t), intent(in) :: model
     type(monitor_t), intent(inout) :: monitor
@@ -319,25 +327,46 @@ contains
     type(equations_t) :: equations
     type(sparse_t) :: matrix
     type(report_t) :: report
-    real(wp), allocatable :: x(:)
+    real(wp), allocatable :: velocity(:, :)
+    real(wp) :: x(2*model%mesh%n_node + 3*size(state%rigids)), ones(3, size(state%rigids)), &
+      bodies(3, size(state%rigids)), displacement(3, size(state%rigids)), &
+      speed(3, size(state%rigids))
+    integer :: i, n
 
     call number_equations(model, state, 0.0_wp, equations)
     call start_matrix(matrix, equations%n)
     call add_mass(model, 1.0_wp, merge(equations%number, 0, equations%number <= equations%n_free), &
       matrix)
-    matrix%n = equations%n_free
+    ones = 1.0_wp
+    call add_rigid_diagonal(state%rigids, ones, equations, matrix)
+    n = equations%n_free
+    matrix%n = n
     call compress_matrix(matrix)
-    allocate (x(equations%n_free))
-    call solve_linear(matrix, -free_entries(equations, step%old_force &
-      + mass_times(model, state%acceleration)), x, report)
+    call solve_linear(matrix, -free_entries(equations, step%old_force + mass_times(model, &
+      state%mass, state%acceleration), step%old_bodies/body_scales(state%rigids)), x(:n), report)
     if (.not. report%is_solved) then
       call raise(error, 'no acceleration at time zero: '//report%message, status_run)
       return
     end if
     call write_log(monitor%log, '  equations: '//to_text(equations%n_free)//' free, ' &
       //to_text(equations%n - equations%n_free)//' prescribed; mass solved by '//report%method)
-    state%acceleration = unpack(x, equations%number > 0 .and. equations%number <= &
-      equations%n_free, state%acceleration)
+    state%acceleration = unpack(x, equations%number > 0 .and. equations%number <= n, &
+      state%acceleration)
+    n = count(equations%number > 0 .and. equations%number <= n)
+    bodies = unpack(x(n + 1:), equations%bodies > 0 .and. equations%bodies <= equations%n_free, &
+      0.0_wp)/body_scales(state%rigids)
+    do i = 1, size(state%rigids)
+      associate (rigid => state%rigids(i))
+        rigid%acceleration = rigid%acceleration + bodies(:, i)
+        displacement(:, i) = rigid%displacement
+        bodies(:, i) = rigid%acceleration
+        speed(:, i) = rigid%velocity
+      end associate
+    end do
+    velocity = state%motion(3:4, :)
+    call spread_rates(model, state%rigids, displacement, speed, bodies, velocity, &
+      state%acceleration)
+    state%motion(3:4, :) = velocity
   end subroutine find_first_acceleration
 
 end module implicit_start_m

@@ -7,7 +7,7 @@ module newton_m
   use nodal_forces_m, only : add_gap_round_off
   use contact_state_m, only : contact_state_t
   use controls_m, only : implicit_t
-  use equations_m, only : free_entries, move_prescribed
+  use equations_m, only : equations_t, free_entries, move_prescribed
   use friction_m, only : let_hold, has_slipped
   use implicit_forces_m, only : trial_t, assemble_forces, trial_fault, step_t, assemble_tangent, &
     assemble_residual
@@ -16,11 +16,13 @@ module newton_m
   use linear_solver_m, only : report_t, solve_linear
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
+  use rigid_equations_m, only : resultants
+  use rigid_state_m, only : body_scales
   use sparse_m, only : sparse_t, compress_matrix
   use state_m, only : state_t
   implicit none
   private
-  public :: outcome_t, find_equilibrium, slip_cycle_t, detect_slip_cycle
+  public :: outcome_t, find_equilibrium, freedom_words, slip_cycle_t, detect_slip_cycle
 
   !> Multiple of the estimated round-off of the residual that counts as reached.
   real(wp), parameter :: floor_margin = 4.0_wp
@@ -94,7 +96,7 @@ contains
     type(direction_t) :: direction
     type(report_t) :: report
     type(slip_cycle_t) :: slip_cycle
-    integer :: iteration, freedom(2) !! direction and node
+    integer :: iteration
 
     trial%motion(1:2, :) = state%motion(1:2, :)
     call assemble_forces(model, state, step%time, .true., clock, trial)
@@ -135,14 +137,41 @@ contains
       call detect_slip_cycle(trial%contacts, now%residual, slip_cycle)
       if (slip_cycle%is_found) exit
     end do
-    freedom = max(1, findloc(step%equations%number, now%worst))
     outcome%reason = 'no equilibrium after '//to_text(outcome%iterations)//' iterations'
     if (slip_cycle%is_found) outcome%reason = outcome%reason &
       //', which cycle between the same states of stick and slip'
-    outcome%reason = outcome%reason//', largest residual at node ' &
-      //to_text(model%mesh%node_id(freedom(2)))//' in '//merge('x', 'y', freedom(1) == 1) &
-      //contacts_of(model, freedom(2))
+    outcome%reason = outcome%reason//', largest residual at ' &
+      //freedom_words(model, step%equations, now%worst, ' in x', ' in y', ' about z')
+    associate (freedom => findloc(step%equations%number, now%worst))
+      if (freedom(2) > 0) outcome%reason = outcome%reason//contacts_of(model, freedom(2))
+    end associate
   end subroutine find_equilibrium
+
+  !> Node or rigid part of an equation, and one of the words for its direction.
+  function freedom_words(model, equations, equation, x, y, turn) result(words)
+    type(model_t), intent(in) :: model
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: equation
+    character(*), intent(in) :: x, y, turn
+    character(:), allocatable :: words
+    integer :: freedom(2)
+
+    freedom = findloc(equations%number, equation)
+    if (freedom(2) > 0) then
+      words = 'node '//to_text(model%mesh%node_id(freedom(2)))
+    else
+      freedom = max(1, findloc(equations%bodies, equation))
+      words = 'rigid part '//to_text(model%parts(model%rigids(freedom(2))%part)%id)
+    end if
+    select case (freedom(1))
+    case (1)
+      words = words//x
+    case (2)
+      words = words//y
+    case default
+      words = words//turn
+    end select
+  end function freedom_words
 
   !> Interfaces of a node in words; empty where there are none.
   function contacts_of(model, node) result(words)
@@ -174,7 +203,7 @@ contains
     type(direction_t), intent(inout) :: direction
     type(report_t), intent(out) :: report
 
-    direction%b = -free_entries(step%equations, assemble_residual(model, state, step, trial))
+    direction%b = -assemble_residual(model, state, step, trial)
     call lap(clock, phase_nodes)
     call assemble_tangent(model, state, step, trial, clock, matrix)
     call move_prescribed(step%equations%n_free, direction%prescribed, matrix, direction%b)
@@ -193,17 +222,19 @@ contains
     type(trial_t), intent(in) :: trial
     type(sparse_t), intent(in) :: matrix
     type(measure_t), intent(inout) :: now
-    real(wp) :: u(step%equations%n_free), total(step%equations%n_free)
+    real(wp) :: u(step%equations%n_free), total(step%equations%n_free), &
+      scales(3, size(state%rigids))
     real(wp), allocatable :: forces(:, :)
     integer :: i, k
 
     now%before = now%residual
-    u = free_entries(step%equations, assemble_residual(model, state, step, trial))
+    u = assemble_residual(model, state, step, trial)
+    scales = body_scales(state%rigids)
     now%residual = norm2(u)
     now%worst = maxloc(abs(u), 1)
-    u = abs(free_entries(step%equations, trial%motion(1:2, :)))
-    total = free_entries(step%equations, abs(trial%internal) + abs(trial%contact) &
-      + abs(trial%external))
+    u = abs(free_entries(step%equations, trial%motion(1:2, :), scales*trial%bodies))
+    total = magnitudes(abs(trial%internal) + abs(trial%contact) + abs(trial%external), &
+      abs(trial%body_load))
     do i = 1, matrix%n
       do k = matrix%first(i), matrix%first(i + 1) - 1
         total(i) = total(i) + abs(matrix%value(k))*u(matrix%column(k))
@@ -216,7 +247,19 @@ contains
         call add_gap_round_off(contact%points, contact%positions, contact%nodes, forces)
       end associate
     end do
-    now%gap_floor = now%floor + epsilon(1.0_wp)*norm2(free_entries(step%equations, forces))
+    now%gap_floor = now%floor + epsilon(1.0_wp)*norm2(magnitudes(forces, 0.0_wp*scales))
+
+  contains
+
+    !> Magnitudes of nodal forces and loads of bodies, by free equation.
+    function magnitudes(nodal, loads) result(found)
+      real(wp), intent(in) :: nodal(:, :), loads(:, :)
+      real(wp) :: found(step%equations%n_free)
+
+      found = free_entries(step%equations, nodal, (resultants(model, state%rigids, trial%bodies, &
+        nodal, .true.) + loads)/scales)
+    end function magnitudes
+
   end subroutine measure_residual
 
   !> The energy criterion of Kang, Lee & Shin (2023), or the round-off of the residual; other
@@ -247,11 +290,13 @@ contains
     type(clock_t), intent(inout) :: clock
     type(trial_t), intent(inout) :: trial
     type(direction_t), intent(inout) :: direction
-    real(wp), allocatable :: start(:, :) !! (2, n_node) displacement at the start
+    real(wp), allocatable :: start(:, :)  !! (2, n_node) displacement at the start ...
+    real(wp), allocatable :: bodies(:, :) !! (3, n_body) ... and that of rigid bodies
     logical :: is_straight
     integer :: i
 
     start = trial%motion(1:2, :)
+    bodies = trial%bodies
     direction%factor = 1.0_wp
     is_straight = .not. any(abs(direction%prescribed) > 0.0_wp)
     do i = 0, most_halvings
@@ -266,11 +311,16 @@ contains
     !> The trial at `direction%factor`, and whether it is valid.
     subroutine evaluate_trial()
       real(wp), allocatable :: steps(:) !! by the numbers of the equations from 0 on
+      real(wp) :: scales(3, size(bodies, 2))
       integer :: j
 
       steps = [0.0_wp, direction%factor*direction%x, direction%prescribed]
       do j = 1, size(start, 2)
         trial%motion(1:2, j) = start(:, j) + steps(step%equations%number(:, j) + 1)
+      end do
+      scales = body_scales(state%rigids)
+      do j = 1, size(bodies, 2)
+        trial%bodies(:, j) = bodies(:, j) + steps(step%equations%bodies(:, j) + 1)/scales(:, j)
       end do
       call assemble_forces(model, state, step%time, .false., clock, trial)
       direction%fault = trial_fault(trial)
@@ -285,8 +335,7 @@ contains
       slope_start = -dot_product(direction%x, direction%b)
       if (.not. slope_start < 0.0_wp) return
       do k = 1, most_searches
-        slope = dot_product(direction%x, free_entries(step%equations, &
-          assemble_residual(model, state, step, trial)))
+        slope = dot_product(direction%x, assemble_residual(model, state, step, trial))
         if (slope <= model%controls%implicit%search_tolerance*abs(slope_start)) return
         sound_factor = direction%factor
         direction%factor = direction%factor*max(least_part, slope_start/(slope_start - slope))

@@ -53,7 +53,7 @@ contains
       call move_alloc(remote%mass, state%mass)
     else
       call lump_mass(model, state%mass)
-      call check_given_masses(model, state%mass, error)
+      call check_masses(model, state%mass, error)
       if (allocated(error)) return
       call log_masses(model, log)
     end if
@@ -236,8 +236,9 @@ contains
     call share_contact_mass(model, state)
   end subroutine start_rigids
 
-  !> Check that the nodes of each body of *PART_INERTIA have masses above 0.
-  subroutine check_given_masses(model, mass, error)
+  !> Check that the nodes of each body of *PART_INERTIA have masses above 0, and that moving walls
+  !> are heavier than each of their nodes.
+  subroutine check_masses(model, mass, error)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: mass(:)     !! (n_node)
     type(error_t), allocatable, intent(out) :: error
@@ -246,15 +247,24 @@ contains
     do i = 1, size(model%rigids)
       associate (body => model%rigids(i))
         if (.not. body%has_inertia .or. all(mass(body%nodes) > 0.0_wp)) cycle
-        call raise(error, 'rigid part '//to_text(model%parts(body%part)%id)//': no masses above ' &
-          //'0 at its nodes have the mass '//to_text(body%given_mass)//', centre of mass ' &
-          //to_text(body%given_centre(1))//', '//to_text(body%given_centre(2))//' and moment of ' &
-          //'inertia '//to_text(body%given_moment)//' of *PART_INERTIA; the mesh must reach ' &
-          //'about as far as the body, in more than one element', status_input)
+        call raise(error, body%source//': rigid part '//to_text(model%parts(body%part)%id) &
+          //': no masses above 0 at its nodes have the mass '//to_text(body%given_mass) &
+          //', centre of mass '//to_text(body%given_centre(1))//', ' &
+          //to_text(body%given_centre(2))//' and moment of inertia '//to_text(body%given_moment) &
+          //'; the mesh must reach about as far as the body, in several elements', status_input)
         return
       end associate
     end do
-  end subroutine check_given_masses
+    if (.not. allocated(model%walls)) return
+    do i = 1, size(model%walls)
+      associate (wall => model%walls(i))
+        if (wall%mass > 0.0_wp .and. any(mass(wall%nodes) >= wall%mass)) call raise(error, &
+          wall%source//': the mass '//to_text(wall%mass)//' of the wall is not above that of a ' &
+          //'node, '//to_text(maxval(mass(wall%nodes)))//', as a moving one''s must be', &
+          status_input)
+      end associate
+    end do
+  end subroutine check_masses
 
   !> Mass, centre and second moments of a set of lumped masses.
   pure subroutine set_body_inertia(positions, mass, rigid)

@@ -187,6 +187,7 @@ def check_moving(run):
     force, momentum = result.table("rwforc"), result.table("matsum")
     expected = mass * SPEED * (1.0 - np.exp(-RHO * WAVE * HEIGHT * end / mass))
     run.check("impulse of a moving wall", force["impulse"][-1], expected)
+    run.check("displacement of a moving wall", force["displacement"][-1], expected / (RHO * WAVE * HEIGHT))
     along = momentum["momentum_x"] * np.cos(0.4) + momentum["momentum_y"] * np.sin(0.4)
     run.check("momentum goes from the wall to the bar", along[-1], force["impulse"][-1])
     run.check("energy ratio with a moving wall", result.table("glstat")["energy_ratio"][1:], np.ones(len(along) - 1))
