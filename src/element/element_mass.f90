@@ -5,6 +5,7 @@
 !> in axisymmetric bodies, of one degree more than 2x2 points hold: 3x3. Elements with nodes of a
 !> rigid body are lumped, since the masses of those nodes are the body's.
 module element_mass_m
+  use hanging_nodes_m, only : share_hanging_forces
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use mesh_m, only : mesh_t
@@ -54,7 +55,8 @@ contains
     end do
   end subroutine add_mass
 
-  !> Product of the mass matrix, or the matrix of mass damping, and a nodal vector.
+  !> Product of the mass matrix, or the matrix of mass damping, and a nodal vector; that of hanging
+  !> nodes is shared by their parents.
   pure function mass_times(model, lumped, vector, rates) result(product)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: lumped(:)    !! (n_node) lumped masses, for the nodes of rigid bodies
@@ -94,6 +96,7 @@ contains
           *vector(:, nodes)
       end associate
     end do
+    call share_hanging_forces(model%mesh, product)
   end function mass_times
 
   !> Kinetic energy and momentum of each part.

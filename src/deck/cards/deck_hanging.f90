@@ -113,8 +113,6 @@ contains
     integer :: i
 
     if (size(lines) == 0) return
-    if (model%controls%implicit%is_on) call line_error(deck, lines(1), &
-      'the implicit method does not have *CONSTRAINED_ADAPTIVITY')
     if (model%erodes) call line_error(deck, lines(1), &
       'is a hanging node, which this version does not have with elements that may erode')
     if (abs(model%controls%mass_step) > 0.0_wp .and. .not. model%controls%masses_stay) call &

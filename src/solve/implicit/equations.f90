@@ -8,14 +8,17 @@ module equations_m
     motion_displacement
   use loads_m, only : is_active
   use curves_m, only : curve_t, curve_value, curve_integral
+  use element_mass_m, only : add_mass
   use kinds_m, only : wp
+  use mesh_m, only : mesh_t
   use model_m, only : model_t
   use rigid_state_m, only : body_scales
-  use sparse_m, only : sparse_t
+  use sparse_m, only : sparse_t, add_block
   use state_m, only : state_t
   implicit none
   private
-  public :: equations_t, number_equations, move_prescribed, free_entries, prescribed_step_t, &
+  public :: equations_t, number_equations, parent_equations, condense, add_free_mass, &
+    move_prescribed, free_entries, prescribed_step_t, &
     prescribe_step, prescribe_start, put_prescribed, list_changes, mean_slope, curve_moment
 
   !> Numbering for one step.
@@ -24,8 +27,9 @@ module equations_m
     integer :: n = 0                        !! free and prescribed ones
     integer, allocatable :: number(:, :)    !! (2, n_node), 0 = none
     integer, allocatable :: bodies(:, :)    !! (3, n_body) of rigid bodies: x, y and turn
-    integer, allocatable :: collected(:, :) !! (2, n_node) as `number`; nodes of rigid bodies have
-                                            !! numbers above n until the matrix is condensed
+    integer, allocatable :: collected(:, :) !! (2, n_node) as `number`; hanging nodes and, after
+                                            !! them, nodes of rigid bodies have numbers above n
+                                            !! until the matrix is condensed
     integer, allocatable :: motion_of(:)    !! (n - n_free) index of the prescribed motion; those of
                                             !! rigid bodies follow those of nodes
   end type equations_t
@@ -83,6 +87,12 @@ contains
     end associate
     equations%collected = equations%number
     n = equations%n
+    if (allocated(model%mesh%hanging)) then
+      do i = 1, size(model%mesh%hanging, 2)
+        equations%collected(:, model%mesh%hanging(1, i)) = [n + 1, n + 2]
+        n = n + 2
+      end do
+    end if
     do i = 1, size(model%rigids)
       do k = 1, size(model%rigids(i)%nodes)
         equations%collected(:, model%rigids(i)%nodes(k)) = [n + 1, n + 2]
@@ -107,6 +117,90 @@ contains
     end subroutine mark_motions
 
   end subroutine number_equations
+
+  !> Equations of both parents of each hanging degree of freedom.
+  pure function parent_equations(mesh, numbers) result(to)
+    type(mesh_t), intent(in) :: mesh
+    integer, intent(in) :: numbers(:, :) !! (2, n_node)
+    integer, allocatable :: to(:, :)     !! (2, 2 n_hanging)
+    integer :: i, k
+
+    allocate (to(2, 0))
+    if (allocated(mesh%hanging)) to = reshape([((numbers(k, mesh%hanging(2:3, i)), k=1, 2), i=1, &
+      size(mesh%hanging, 2))], [2, 2*size(mesh%hanging, 2)])
+  end function parent_equations
+
+  !> Condense dependent degrees of freedom, the numbers above n, out of the collected entries of a
+  !> matrix: each is the sum of two others times their shares.
+  pure subroutine condense(n, to, shares, matrix)
+    integer, intent(in) :: n
+    integer, intent(in) :: to(:, :)         !! (2, dependent) their equations, 0 = none
+    real(wp), intent(in) :: shares(:, :)    !! (2, dependent)
+    type(sparse_t), intent(inout) :: matrix !! not compressed
+    real(wp), allocatable :: values(:)
+    integer, allocatable :: dependent(:), rows(:), columns(:)
+    integer :: i, pair(2, 2), n_left
+    real(wp) :: weights(2, 2)
+
+    ! Entries of dependent ones leave the list, the others move up.
+    associate (last => matrix%n_entry)
+      dependent = pack([(i, i=1, last)], max(matrix%rows(:last), matrix%columns(:last)) > n)
+      rows = matrix%rows(dependent)
+      columns = matrix%columns(dependent)
+      values = matrix%values(dependent)
+      n_left = 0
+      do i = 1, last
+        if (max(matrix%rows(i), matrix%columns(i)) > n) cycle
+        n_left = n_left + 1
+        matrix%rows(n_left) = matrix%rows(i)
+        matrix%columns(n_left) = matrix%columns(i)
+        matrix%values(n_left) = matrix%values(i)
+      end do
+      last = n_left
+    end associate
+    do i = 1, size(values)
+      call expand(rows(i), pair(:, 1), weights(:, 1))
+      call expand(columns(i), pair(:, 2), weights(:, 2))
+      weights = values(i)*reshape([weights(:, 1)*weights(1, 2), weights(:, 1)*weights(2, 2)], &
+        [2, 2])
+      call add_block(matrix, pair(:, 1), pair(:, 2), weights)
+    end do
+
+  contains
+
+    !> Equations of a collected number and their weights.
+    pure subroutine expand(number, at, weight)
+      integer, intent(in) :: number
+      integer, intent(out) :: at(2)
+      real(wp), intent(out) :: weight(2)
+
+      at = [number, 0]
+      weight = 1.0_wp
+      if (number <= n) return
+      at = to(:, number - n)
+      weight = shares(:, number - n)
+    end subroutine expand
+
+  end subroutine condense
+
+  !> Add a mass matrix, or that of mass damping, of the free degrees of freedom.
+  pure subroutine add_free_mass(model, factor, equations, matrix, rates)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: factor
+    type(equations_t), intent(in) :: equations
+    type(sparse_t), intent(inout) :: matrix       !! not compressed
+    real(wp), intent(in), optional :: rates(:, :) !! as of `add_mass`
+    integer :: columns(2, model%mesh%n_node)
+    integer, allocatable :: to(:, :)
+
+    columns = merge(equations%number, 0, equations%number <= equations%n_free)
+    to = parent_equations(model%mesh, columns)
+    if (allocated(model%mesh%hanging)) columns(:, model%mesh%hanging(1, :)) &
+      = equations%collected(:, model%mesh%hanging(1, :))
+    call add_mass(model, factor, columns, matrix, rates)
+    if (size(to) > 0) call condense(equations%n, to, spread(spread(0.5_wp, 1, 2), 2, &
+      size(to, 2)), matrix)
+  end subroutine add_free_mass
 
   !> Move prescribed columns of the matrix to the right-hand side: b(free) -= K(free, prescribed) *
   !> increments. The matrix keeps the free rows and columns.

@@ -12,16 +12,18 @@ module implicit_forces_m
   use cut_forces_m, only : find_cut_forces
   use element_dispatch_m, only : add_tile_forces, scatter_tile_forces, store_tile_forces, &
     sum_special_forces
-  use element_mass_m, only : mass_times, add_mass
+  use element_mass_m, only : mass_times
   use element_stiffness_m, only : add_stiffness
-  use equations_m, only : equations_t, prescribed_step_t, free_entries, put_prescribed
+  use equations_m, only : equations_t, prescribed_step_t, free_entries, put_prescribed, &
+    add_free_mass
+  use hanging_nodes_m, only : move_hanging_nodes, share_hanging_forces
   use loads_m, only : form_external_force, body_acceleration, damping_rates
   use interface_m, only : evaluate_contact
   use kinds_m, only : wp
   use model_m, only : model_t
   use packed_buffer_m, only : packed_buffer_t
   use rigid_equations_m, only : place_rigids, spread_rates, resultants, form_rigid_loads, &
-    condense_rigids, add_rigid_diagonal
+    condense_nodes, add_rigid_diagonal
   use rigid_state_m, only : body_scales, damping_of
   use sparse_m, only : sparse_t, start_matrix, add_block
   use state_m, only : state_t
@@ -111,6 +113,7 @@ contains
     integer :: i
 
     call place_rigids(model, state%rigids, trial%bodies, trial%motion)
+    call move_hanging_nodes(model%mesh, trial%motion)
     trial%motion(3:4, :) = trial%motion(1:2, :) - state%motion(1:2, :)
     ! Element forces from the committed history.
     trial%elements = state%elements
@@ -123,6 +126,7 @@ contains
       end associate
     end do
     call sum_special_forces(model%layout, trial%slots, 1, model%layout%n_special, trial%internal)
+    call share_hanging_forces(model%mesh, trial%internal)
     call lap(clock, phase_elements)
     trial%contact = 0.0_wp
     trial%contacts = state%contacts
@@ -133,6 +137,7 @@ contains
       call lap_interface(clock, i)
     end do
     call form_external_force(model, trial%motion, time, trial%external)
+    call share_hanging_forces(model%mesh, trial%external)
     if (size(model%conditions%body_loads) > 0) then
       body = body_acceleration(model%conditions, model%curves, time)
       trial%external = trial%external + mass_times(model, state%mass, spread(body, 2, &
@@ -226,6 +231,7 @@ contains
         + step%alpha_m*state%acceleration
       call put_prescribed(step%equations%number, step%equations%n_free, step%prescribed%mean, &
         rates%acceleration)
+      call move_hanging_nodes(model%mesh, rates%acceleration)
       force = (1.0_wp - step%alpha_f)*force + step%alpha_f*step%old_force &
         + mass_times(model, state%mass, rates%acceleration)
       do i = 1, size(state%rigids)
@@ -270,6 +276,8 @@ contains
       call put_prescribed(bodies, n_free, given%velocity, rates%body_velocity)
       call put_prescribed(bodies, n_free, given%acceleration, rates%body_acceleration)
     end associate
+    call move_hanging_nodes(model%mesh, rates%velocity)
+    call move_hanging_nodes(model%mesh, rates%acceleration)
     call spread_rates(model, state%rigids, trial%bodies, rates%body_velocity, &
       rates%body_acceleration, rates%velocity, rates%acceleration)
   end subroutine find_rates
@@ -303,7 +311,7 @@ contains
     type(trial_t), intent(in) :: trial
     type(clock_t), intent(inout) :: clock
     type(sparse_t), intent(inout) :: matrix
-    integer :: columns(2, model%mesh%n_node), i
+    integer :: i
     real(wp) :: factors(3, size(model%rigids)), rates(2, size(model%parts) + 1)
 
     call start_matrix(matrix, step%equations%n)
@@ -320,17 +328,17 @@ contains
       call add_pressure_stiffness(model, model%conditions%pressures(i), trial%motion, step%time, &
         step%equations, matrix)
     end do
-    call condense_rigids(model, state%rigids, trial%bodies, trial%internal - trial%contact &
+    call condense_nodes(model, state%rigids, trial%bodies, trial%internal - trial%contact &
       - trial%external, step%equations, matrix)
     if (.not. step%is_dynamic) return
     matrix%values(:matrix%n_entry) = (1.0_wp - step%alpha_f)*matrix%values(:matrix%n_entry)
-    columns = merge(step%equations%number, 0, step%equations%number <= step%equations%n_free)
-    call add_mass(model, (1.0_wp - step%alpha_m)/(step%beta*step%dt**2), columns, matrix)
+    call add_free_mass(model, (1.0_wp - step%alpha_m)/(step%beta*step%dt**2), step%equations, &
+      matrix)
     factors = (1.0_wp - step%alpha_m)/(step%beta*step%dt**2)
     if (allocated(trial%damping)) then
       rates = damping_rates(model, step%time)
       associate (factor => (1.0_wp - step%alpha_f)*step%gamma/(step%beta*step%dt))
-        call add_mass(model, factor, columns, matrix, rates)
+        call add_free_mass(model, factor, step%equations, matrix, rates)
         do i = 1, size(model%rigids)
           factors(:, i) = factors(:, i) + factor*damping_of(state%rigids(i), trial%bodies(3, i), &
             rates(:, model%rigids(i)%part))

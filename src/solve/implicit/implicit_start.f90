@@ -11,11 +11,13 @@ module implicit_start_m
   use controls_m, only : controls_t
   use cut_forces_m, only : store_cut_chunks
   use damping_m, only : of_stuck
-  use element_mass_m, only : add_mass, mass_times
-  use equations_m, only : equations_t, number_equations, free_entries, prescribe_start, list_changes
+  use element_mass_m, only : mass_times
+  use equations_m, only : equations_t, number_equations, free_entries, prescribe_start, &
+    list_changes, add_free_mass
   use errors_m, only : error_t, raise, status_run
   use implicit_forces_m, only : trial_t, start_trial, net_force, net_body_force, cut_sections, &
     assemble_forces, step_t
+  use hanging_nodes_m, only : move_hanging_nodes
   use kinds_m, only : wp
   use friction_m, only : has_decay
   use linear_solver_m, only : report_t, solve_linear
@@ -291,6 +293,7 @@ contains
     allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
     if (memory%step%is_dynamic) then
       call prescribe_start(model, dt, state)
+      call move_hanging_nodes(model%mesh, state%motion)
     else
       state%motion(3:4, :) = 0.0_wp
       do i = 1, size(state%rigids)
@@ -335,8 +338,7 @@ contains
 
     call number_equations(model, state, 0.0_wp, equations)
     call start_matrix(matrix, equations%n)
-    call add_mass(model, 1.0_wp, merge(equations%number, 0, equations%number <= equations%n_free), &
-      matrix)
+    call add_free_mass(model, 1.0_wp, equations, matrix)
     ones = 1.0_wp
     call add_rigid_diagonal(state%rigids, ones, equations, matrix)
     n = equations%n_free
@@ -363,6 +365,7 @@ contains
         speed(:, i) = rigid%velocity
       end associate
     end do
+    call move_hanging_nodes(model%mesh, state%acceleration)
     velocity = state%motion(3:4, :)
     call spread_rates(model, state%rigids, displacement, speed, bodies, velocity, &
       state%acceleration)

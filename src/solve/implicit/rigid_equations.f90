@@ -5,7 +5,7 @@
 !> those of the body.
 module rigid_equations_m
   use curves_m, only : curve_value
-  use equations_m, only : equations_t
+  use equations_m, only : equations_t, parent_equations, condense
   use kinds_m, only : wp
   use model_m, only : model_t
   use rigid_state_m, only : rigid_state_t, rotation_terms, rotation_shift, velocity_of, body_scales
@@ -13,7 +13,7 @@ module rigid_equations_m
   implicit none
   private
   public :: place_rigids, spread_rates, resultants, form_rigid_loads, &
-    condense_rigids, add_rigid_diagonal
+    condense_nodes, add_rigid_diagonal
 
 contains
 
@@ -95,47 +95,34 @@ contains
     end do
   end function form_rigid_loads
 
-  !> Condense the nodes of all bodies out of the collected entries of a stiffness: T^T K T and, by
-  !> the turn of T, minus arm times force on the turn's diagonal.
-  pure subroutine condense_rigids(model, rigids, displacement, force, equations, matrix)
+  !> Condense hanging nodes and the nodes of all bodies out of the collected entries of a stiffness:
+  !> T^T K T and, by the turn of T, minus arm times force on the turn's diagonal.
+  pure subroutine condense_nodes(model, rigids, displacement, force, equations, matrix)
     type(model_t), intent(in) :: model
     type(rigid_state_t), intent(in) :: rigids(:)
     real(wp), intent(in) :: displacement(:, :) !! (3, n_body)
     real(wp), intent(in) :: force(:, :)        !! (2, n_node) whose derivative K is
     type(equations_t), intent(in) :: equations
     type(sparse_t), intent(inout) :: matrix    !! not compressed
-    real(wp) :: arm(2), scales(3, size(rigids)), spring, weights(2, 2)
-    real(wp), allocatable :: turns(:), values(:)
-    integer, allocatable :: to(:, :), dependent(:), rows(:), columns(:)
-    integer :: i, k, n, pair(2, 2)
+    real(wp) :: arm(2), scales(3, size(rigids)), spring
+    real(wp), allocatable :: shares(:, :)
+    integer, allocatable :: to(:, :), hanging(:, :)
+    integer :: i, k, n
 
-    if (size(rigids) == 0) return
-    n = 2*sum([(size(model%rigids(i)%nodes), i=1, size(rigids))])
-    allocate (turns(n), to(2, n)) ! of each dependent number: by the turn; equations of its body
+    n = max(equations%n, maxval(equations%collected)) - equations%n
+    if (n == 0) return
+    allocate (shares(2, n), to(2, n)) ! of each dependent number: two equations with their shares
+    hanging = parent_equations(model%mesh, equations%number)
+    n = size(hanging, 2)
+    to(:, :n) = hanging
+    shares(:, :n) = 0.5_wp
+    shares(1, n + 1:) = 1.0_wp
     scales = body_scales(rigids)
-    n = 0
-    ! Entries of nodes leave the list, the others move up.
-    associate (last => matrix%n_entry)
-      dependent = pack([(i, i=1, last)], max(matrix%rows(:last), matrix%columns(:last)) &
-        > equations%n)
-      rows = matrix%rows(dependent)
-      columns = matrix%columns(dependent)
-      values = matrix%values(dependent)
-      do i = 1, last
-        if (max(matrix%rows(i), matrix%columns(i)) > equations%n) cycle
-        n = n + 1
-        matrix%rows(n) = matrix%rows(i)
-        matrix%columns(n) = matrix%columns(i)
-        matrix%values(n) = matrix%values(i)
-      end do
-      last = n
-    end associate
-    n = 0
     do i = 1, size(rigids)
       spring = 0.0_wp
       do k = 1, size(model%rigids(i)%nodes)
         arm = arm_at(rigids(i), displacement(3, i), k)/scales(3, i)
-        turns(n + 1:n + 2) = [-arm(2), arm(1)]
+        shares(2, n + 1:n + 2) = [-arm(2), arm(1)]
         to(:, n + 1) = equations%bodies([1, 3], i)
         to(:, n + 2) = equations%bodies([2, 3], i)
         spring = spring - dot_product(arm, force(:, model%rigids(i)%nodes(k)))/scales(3, i)
@@ -144,30 +131,8 @@ contains
       call add_block(matrix, equations%bodies([3], i), equations%bodies([3], i), &
         reshape([spring], [1, 1]))
     end do
-    do i = 1, size(values)
-      call expand(rows(i), pair(:, 1), weights(:, 1))
-      call expand(columns(i), pair(:, 2), weights(:, 2))
-      weights = values(i)*reshape([weights(:, 1)*weights(1, 2), weights(:, 1)*weights(2, 2)], &
-        [2, 2])
-      call add_block(matrix, pair(:, 1), pair(:, 2), weights)
-    end do
-
-  contains
-
-    !> Equations of a collected number and their weights.
-    pure subroutine expand(number, at, weight)
-      integer, intent(in) :: number
-      integer, intent(out) :: at(2)
-      real(wp), intent(out) :: weight(2)
-
-      at = [number, 0]
-      weight = 1.0_wp
-      if (number <= equations%n) return
-      at = to(:, number - equations%n)
-      weight(2) = turns(number - equations%n)
-    end subroutine expand
-
-  end subroutine condense_rigids
+    call condense(equations%n, to, shares, matrix)
+  end subroutine condense_nodes
 
   !> Add factors times inertia to the diagonal of the free degrees of freedom of bodies.
   pure subroutine add_rigid_diagonal(rigids, factors, equations, matrix)

@@ -48,6 +48,21 @@ def check_patch(run, points, implicit, thirds):
     run.check(f"{name}: displacement", result.points("displacement")[-1][:, :2], coordinates @ (scale * GRADIENT).T)
 
 
+def check_newton(run):
+    """A block bent far in one static step: of one iteration to the next the energy falls with the second power."""
+    coordinates, quads, hanging = divide(*grid(4, 8, 0.5, 1.0), (0, 5, 6, 13, 18, 27))
+    deck = Deck("bent block with hanging nodes").add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 1.0))
+    ids = deck.part(points=4).elastic(RHO, YOUNG, POISSON).mesh(coordinates, quads)
+    deck.hang(ids, hanging).fix(ids[coordinates[:, 1] == 0.0], x=1, y=1)
+    deck.curve(1, [(0.0, 0.0), (1.0, 1.0)])
+    for node in ids[coordinates[:, 1] == 1.0]:
+        deck.prescribe(node, 1, 2, 1, 0.05)
+    rows = run.program(deck.output(glstat=1.0), name="bent").newton()[0]
+    energy = [ratio for ratio, residual in rows if residual > 100.0]
+    orders = [np.log(after) / np.log(before) for before, after in zip(energy[1:], energy[2:])]
+    run.check("bent block: order of Newton's method", orders[-1], 2.0)
+
+
 def free_square(n, seed):
     """A square of n x n elements, some divided, in random motion."""
     rng = np.random.default_rng(seed)
@@ -71,7 +86,7 @@ def shared(mass, hanging):
 
 def check_balances(run):
     """Momentum, angular momentum and energy of a free body; mean of the parents at all times."""
-    for method in ("explicit",):
+    for method in ("explicit", "implicit"):
         deck, coordinates, quads, hanging = free_square(6, 3)
         mass = shared(lumped_mass(coordinates, quads, RHO), hanging)
         end = 0.1
@@ -234,9 +249,10 @@ def check_taylor(run):
 
 
 def check(run):
-    for points, implicit in ((None, False), (4, False)):
+    for points, implicit in ((None, False), (4, False), (4, True)):
         for n in (1, 3):
             check_patch(run, points, implicit, n)
+    check_newton(run)
     check_balances(run)
     check_step(run)
     check_contact_patch(run)
