@@ -4,7 +4,8 @@
 !> `element_tangent`).
 module element_stiffness_m
   use block_state_m, only : block_state_t
-  use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
+  use short_dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), &
+    sqrt
   use element_tangent_m, only : element_t, shape_t, n_pattern, new_element, set_pattern_values, &
     form_full_force, form_gradient, find_stress, find_sheet_stress, pressure_of, start_volumes, &
     twice_area, products, cross

@@ -4,12 +4,12 @@
 !> d42, h in x and y, and s, the sum of the radii; an integration point is the parallelogram of its
 !> own diagonals at its own radius.
 module element_tangent_m
-  use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
-    operator(/)
   use kinds_m, only : wp
   use material_dispatch_m, only : form_tangent, has_mean_dilatation
   use parts_m, only : material_t, rubber_t
   use quad_points_m, only : n_point, point_areas, shape_at_points, shift, along_a, along_b, along_h
+  use short_dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), &
+    operator(*), operator(/)
   use stress_chunk_m, only : stress_point_t
   use volumetric_m, only : log_ratio
   implicit none

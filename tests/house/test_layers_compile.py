@@ -31,7 +31,8 @@ def build_small_tree(tmp_path_factory):
         folder.mkdir(parents=True, exist_ok=True)
         uses = "".join(USE.format(layer=name) for name in sorted(allowed))
         (folder / f"probe_{layer}.f90").write_text(GOOD.format(layer=layer, uses=uses))
-    shutil.copy(ROOT / "src/base/build_info.f90.in", tree / "src/base")
+    for name in ("build_info.f90.in", "dual.f90.in", "kinds.f90"):
+        shutil.copy(ROOT / "src/base" / name, tree / "src/base")
     build = tree / "build"
     for command in (["cmake", "-S", tree, "-B", build, "-G", "Ninja", "-DSLIDELINE_TESTS=OFF", "-DSLIDELINE_INSTALL=OFF",
                      "-DSLIDELINE_SANITIZE=OFF", "-DSLIDELINE_STATIC_HDF5=OFF", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"],

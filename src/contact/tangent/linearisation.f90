@@ -178,11 +178,11 @@ contains
   end subroutine project_point
 
   !> Let a projection on a segment be that on its arc, of a point on the arc of its own segment
-  !> (`arcs_m`). The shape of the latter is held, though it changes with the nodes beside it.
+  !> (`arcs_m`).
   pure subroutine project_on_arcs(memory, point, owner, d, t, projection)
     type(contact_state_t), intent(in) :: memory
     type(linearised_point_t), intent(inout) :: point !! out: its distance; nodes beside the segment
-                                                     !! in slots 7, 8
+                                                     !! in slots 7, 8, beside its own in 9, 10
     integer, intent(in) :: owner        !! first slot of the segment
     type(dual_t), intent(in) :: d(2)    !! from its first node to the point, m
     type(dual_t), intent(in) :: t(2)    !! the segment, m
@@ -201,11 +201,11 @@ contains
     off = constant([0.0_wp, 0.0_wp])
     if (.not. is_flat(own_shape)) then
       own = difference(memory%positions, point, 2, 1)
-      call find_height(constant(own_shape%bend), constant(own_shape%skew), point%slave_xi, height, &
-        sine)
+      call linearise_shape(memory, point, 1, 9, own, bend, skew)
+      call find_height(bend, skew, point%slave_xi, height, sine)
       off = [height*own(2), -(height*own(1))]
     end if
-    call linearise_shape(memory, point, owner, t, bend, skew)
+    call linearise_shape(memory, point, owner, 7, t, bend, skew)
     length = sqrt(t(1)*t(1) + t(2)*t(2))
     unit = [t(1)/length, t(2)/length]
     normal = [unit(2), -unit(1)]
@@ -225,13 +225,14 @@ contains
   end subroutine project_on_arcs
 
   !> Shape of the arc of a segment; how much of a turn it follows is held.
-  pure subroutine linearise_shape(memory, point, owner, t, bend, skew)
+  pure subroutine linearise_shape(memory, point, owner, beside, t, bend, skew)
     type(contact_state_t), intent(in) :: memory
-    type(linearised_point_t), intent(inout) :: point !! out: nodes in slots 7, 8
+    type(linearised_point_t), intent(inout) :: point !! out: the nodes beside the segment
     integer, intent(in) :: owner     !! first slot of the segment
+    integer, intent(in) :: beside    !! first slot of these
     type(dual_t), intent(in) :: t(2) !! the segment, m
     type(dual_t), intent(out) :: bend, skew
-    type(dual_t) :: sines(2), beside(2), turn
+    type(dual_t) :: sines(2), other(2), turn
     type(arc_shape_t) :: shape
     integer :: ends(2), k
 
@@ -241,13 +242,13 @@ contains
     associate (arcs => memory%arcs, share => memory%arcs%share(:, ends(1)))
       do k = 1, 2
         if (.not. share(k) > 0.0_wp) cycle
-        point%nodes(6 + k) = arcs%beside(k, ends(k))
-        beside = difference(memory%positions, point, merge(owner, 8, k == 1), &
-          merge(7, owner + 1, k == 1))
+        point%nodes(beside + k - 1) = arcs%beside(k, ends(k))
+        other = difference(memory%positions, point, merge(owner, beside + 1, k == 1), &
+          merge(beside, owner + 1, k == 1))
         if (k == 1) then
-          turn = half_turn(beside, t)
+          turn = half_turn(other, t)
         else
-          turn = half_turn(t, beside)
+          turn = half_turn(t, other)
         end if
         associate (terms => sine_terms(share(k)))
           sines(k) = (2.0_wp*share(k))*turn/sqrt(turn*turn*(terms(2)*turn*turn + terms(1)) + 1.0_wp)

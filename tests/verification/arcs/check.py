@@ -89,6 +89,7 @@ def static_fit(run, name, kind, fit):
         fit.deck.fix([int(fit.shaft[fit.facets[0] // 4, 0])], x=1)
     fit.contact(kind, ramp=[(0.0, 0.0), (1.0, 1.0)])
     result = run.program(fit.deck.output(plot=1.0))
+    run.check(f"{name}: largest number of iterations", max(map(len, result.newton())), 5)
     run.true(f"{name}: all segments stand for arcs",
              reported("{0} of {0}".format(fit.facets[0]), "{0} of {0}".format(fit.facets[1])) in log_of(result))
     return fit.found(result)
