@@ -87,6 +87,12 @@ def area_of(corners):
     return 0.5 * (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
+def test_layouts_of_a_deck_with_wide_fields():
+    wide = "*NODE +\n" + "".join(f"{node:20d}{x:20.4f}{y:20.4f}\n" for node, x, y in [(1, 0, 0), (2, 1, 0), (3, 1, 1), (4, 0, 1)])
+    mesh = mesh_of("*KEYWORD\n" + wide + "*ELEMENT_SHELL %\n" + "".join(f"{number:10d}" for number in (9, 7, 1, 2, 3, 4)) + "\n*END\n")
+    assert mesh.elements == [(9, 7, [1, 2, 3, 4])] and mesh.points[3].tolist() == [1.0, 1.0]
+
+
 # ---- the mesh --------------------------------------------------------------------------------
 
 @PROGRAM
@@ -352,6 +358,19 @@ def test_an_answer_is_found_written_and_kept(deck, tmp_path, tool, plain_picture
     assert marks == [path.stat().st_mtime_ns for path in sorted((tmp_path / "out").glob("mesh_*/bar.glstat.csv"))]
     deck.write_text(bar(end="3e-5"), encoding="ascii")
     assert "kept" not in tool(*words).stderr
+
+
+@PROGRAM
+@pytest.mark.parametrize("adapt", [(), ("--adapt",)], ids=["divided", "adapted"])
+def test_runs_of_a_file_that_has_changed_are_not_kept(deck, tmp_path, tool, plain_pictures, adapt):
+    part = tmp_path / "parts/bar.inc"
+    part.parent.mkdir()
+    deck.write_text("*KEYWORD\n*INCLUDE_PATH\nparts\n*INCLUDE\nbar.inc\n*END\n", encoding="ascii")
+    words = ("answer", deck, "--of", QUANTITY, "--within", "90%", "--folder", tmp_path / "out", *adapt)
+    for end in ("2e-5", "3e-5"):
+        part.write_text(bar(PULLED + "*DATABASE_BINARY_D3PLOT\n1e-5,\n", end=end), encoding="ascii")
+        done = tool(*words)
+        assert done.returncode == 0 and "kept" not in done.stderr, done.stderr
 
 
 @PROGRAM

@@ -274,7 +274,6 @@ class Division:
         self.whole_sets = {sid: mesh.walked(nodes, sid in self.ordered) for sid, nodes in sets.items()}
         self.written = False
         self.loads: dict[tuple, dict[int, float]] = {}
-        self.velocities: dict[int, tuple[float, ...]] = {}
 
     def block(self, block: Block) -> list[str]:
         """The lines of a block."""

@@ -102,10 +102,10 @@ class Meshes:
         return self._sets
 
     def mark(self, deck: pathlib.Path, parameters) -> str:
-        """A digest of what a run depends on; of its includes the first run's effective deck tells."""
+        """A digest of what a run depends on."""
         if not deck.is_file():
             raise UserError(f"{deck}: no such file")
-        parts = [deck.read_bytes(), json.dumps(parameters, sort_keys=True, default=str).encode(), version(self.program)]
+        parts = [*(file.read_bytes() for file in files_of(deck)), json.dumps(parameters, sort_keys=True, default=str).encode(), version(self.program)]
         return hashlib.sha256(b"\0".join(parts)).hexdigest()
 
     def record(self, folder, deck, parameters, mark) -> MeshRun | None:
@@ -158,13 +158,28 @@ class AdaptedMeshes(Meshes):
         if factor == 1:
             if not self.deck.is_file():
                 raise UserError(f"{self.deck}: no such file")
-            text = f"*KEYWORD\n*INCLUDE\n{self.deck.resolve()}\n*DATABASE_ERROR_INDICATOR\n*END\n"
+            folders = [self.deck.parent / line.strip() for block in read_blocks(
+                self.deck.read_text(encoding="utf-8", errors="replace"), "INCLUDE_PATH") for line in block.lines]
+            paths = "".join(f"*INCLUDE_PATH\n{folder.resolve()}\n" for folder in folders)
+            text = f"*KEYWORD\n{paths}*INCLUDE\n{self.deck.resolve()}\n*DATABASE_ERROR_INDICATOR\n*END\n"
         else:
             before = Run(self.folder / f"mesh_{factor - 1}" / f"{self.deck.stem}.effective.k")
             text = refine_run(before, self.program, SHARE, surfaces=True)[0]
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
         return path, self.parameters if factor == 1 else {}
+
+
+def files_of(deck: pathlib.Path, folders: tuple[pathlib.Path, ...] = ()) -> list[pathlib.Path]:
+    """A deck and the files that it includes, found in `folders` (*INCLUDE_PATH) too."""
+    files = [deck]
+    for block in read_blocks(deck.read_text(encoding="utf-8", errors="replace"), "INCLUDE"):
+        for name in map(str.strip, block.lines):
+            if block.keyword.startswith("INCLUDE_PATH"):
+                folders = (*folders, pathlib.Path(name), deck.parent / name)
+            elif found := next((file for folder in (pathlib.Path(), *folders, deck.parent) if (file := folder / name).is_file()), None):
+                files += files_of(found, folders)
+    return files
 
 
 def version(program: str) -> bytes:
