@@ -29,7 +29,8 @@ class Block:
         if "," in text:
             return [field.strip() for field in text.split(",")]
         if widths and self.width == 10:
-            starts = [0, *itertools.accumulate(widths)]
+            least = 10 if self.head.rstrip().endswith("%") else 0
+            starts = [0, *itertools.accumulate(max(width, least) for width in widths)]
             return [text[a:b].strip() for a, b in itertools.pairwise(starts) if a < len(text)]
         return [text[k:k + self.width].strip() for k in range(0, len(text), self.width)]
 
@@ -44,7 +45,8 @@ def read_blocks(text: str, *prefixes: str) -> list[Block]:
     blocks, wide = [], False
     for line in text.splitlines():
         if line.startswith("*"):
-            name = (line[1:].split() or [""])[0].upper()
+            name, mark = ([*line[1:].split(), "", ""])[:2]
+            name = name.upper() + (mark if mark in ("+", "-", "%") else "")
             if name == "KEYWORD":
                 wide = "LONG=Y" in line.upper() or "LONG=K" in line.upper()
             long = (wide or name.endswith("+")) and not name.endswith("-")

@@ -138,7 +138,7 @@ class Refinement(Division):
             return [block.head, *block.lines]
         lines = super().block(block)
         if block.keyword == "BOUNDARY_PRESCRIBED_MOTION_NODE":  # hanging nodes follow their parents
-            lines = [line for line in lines if line == block.head or whole(line.split(",")[0][:10].strip()) not in self.hanging]
+            lines = [line for line in lines if line == block.head or whole(line.split(",")[0][:block.width].strip()) not in self.hanging]
         return lines
 
     def further(self) -> list[str]:
