@@ -26,7 +26,7 @@ if typing.TYPE_CHECKING:
     import pandas
 
 #: what the command line may change of any deck; those of a contact also as `name.INTERFACE`
-OF_CONTACT = ("ctype", "ngauss", "pen", "punit", "pent", "vdc", "fs", "fd", "dc", "vc", "tfac")
+OF_CONTACT = ("ctype", "ngauss", "pen", "punit", "pent", "vdc", "fs", "fd", "dc", "vc", "tfac", "target", "smooth")
 OVERRIDES = (*OF_CONTACT, "endtim", "dt", "tssfac")
 #: exit status -> words
 ENDINGS = {0: "normal termination", 1: "refused", 2: "error termination", 3: "trouble with files",
@@ -137,8 +137,8 @@ def run(deck: str | os.PathLike, folder: str | os.PathLike | None = None, *,
     """Run a deck and wait for its end.
 
     `folder` of the results (default: results/<deck>); `parameters` are what may be changed of every
-    deck (ctype, ngauss, pen, punit, pent, vdc, fs, fd, dc, vc, tfac, endtim, dt, tssfac; of
-    interface 2 alone **{"ctype.2": 6}), and otherwise a *PARAMETER of the deck (**{"p:dt": 1e-7}
+    deck (ctype, ngauss, pen, punit, pent, vdc, fs, fd, dc, vc, tfac, target, smooth, endtim, dt,
+    tssfac; of interface 2 alone **{"ctype.2": 6}), and otherwise a *PARAMETER of the deck (**{"p:dt": 1e-7}
     where it has one of those names). RunError where the run does not end normally, unless `check`
     is False.
     """
