@@ -61,7 +61,7 @@ TOP_LEVEL = {"CMakeLists.txt", "README.md", "src", "input", "tests", "tools", "d
 
 SOURCES = [read_source(path) for path in sorted((ROOT / "src").rglob("*.f90"))]
 OWNER = {module: source for source in SOURCES for module in source.modules}
-OWNER["build_info_m"] = None  # made by CMake, in base
+OWNER |= dict.fromkeys(("build_info_m", "dual_m", "short_dual_m"))  # made by CMake, in base
 OUTSIDE["source_version_m"] = {""}  # made at every build, for the program alone
 
 
