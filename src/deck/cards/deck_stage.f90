@@ -66,6 +66,12 @@ contains
         end if
         n_history = 0
         if (n_value == n_stage_value) n_history = integer_of(card, 'NHISV')
+        if (cursor%last - cursor%line + 1 < integer_of(card, 'NPLANE') &
+          *cards_of_point(integer_of(card, 'LARGE') == 1, n_history)) then
+          call report_field(deck, card, 'EID', 'has fewer cards than its points and history ' &
+            //'values need: the file is not complete')
+          exit
+        end if
         values = 0.0_wp
         do k = 1, integer_of(card, 'NPLANE')
           call read_point(deck, cursor, integer_of(card, 'LARGE') == 1, n_history, values(:, k))
@@ -78,6 +84,16 @@ contains
     end do
     if (present(n_element)) n_element = count(is_given)
   end subroutine read_tables
+
+  !> Cards of a point.
+  pure function cards_of_point(is_large, n_history) result(n)
+    logical, intent(in) :: is_large
+    integer, intent(in) :: n_history
+    integer :: n
+
+    n = merge(2 + (n_history/5 + min(1, mod(n_history, 5))), &
+      1 + (n_history/8 + min(1, mod(n_history, 8))), is_large)
+  end function cards_of_point
 
   !> Read the values of a point: stress, plastic strain and history as in the file, or strain.
   subroutine read_point(deck, cursor, is_large, n_history, values)
