@@ -387,7 +387,8 @@ contains
       if (model%springback%is_on .and. .not. (stopped .or. allocated(error) .or. &
         model%controls%check_only)) then
         call write_dynain(model, state, monitor%restarts%prefix//'.dynain', error)
-        call write_log(monitor%log, 'state for the next stage: '//monitor%restarts%job//'.dynain')
+        if (.not. allocated(error)) call write_log(monitor%log, 'state for the next stage: ' &
+          //monitor%restarts%job//'.dynain')
       end if
       call finish_monitor(monitor, closing_error)
       if (.not. allocated(error) .and. allocated(closing_error)) &

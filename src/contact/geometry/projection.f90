@@ -406,8 +406,8 @@ contains
       + one(2)*one(2))*(two(1)*two(1) + two(2)*two(2)))
   end function turns_gently
 
-  !> Neighbour across a gentle corner that a penetrating point is nearer to, or 0. Such a neighbour
-  !> can only be nearer when the gap exceeds the distance to the end of the segment.
+  !> Neighbour across a gentle corner that a point is nearer to, or 0: none unless the distance to
+  !> the segment exceeds that to its end.
   pure function nearer_face(surface, polyline, point, segment, local) result(neighbour)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: polyline(:, :)
