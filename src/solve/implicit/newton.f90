@@ -7,11 +7,13 @@ module newton_m
   use nodal_forces_m, only : add_gap_round_off
   use contact_state_m, only : contact_state_t
   use controls_m, only : implicit_t
+  use element_state_m, only : stress_of_slot
   use equations_m, only : equations_t, free_entries, move_prescribed
   use friction_m, only : let_hold, has_slipped
   use implicit_forces_m, only : trial_t, assemble_forces, trial_fault, step_t, assemble_tangent, &
     assemble_residual
   use kinds_m, only : wp
+  use layout_m, only : slot_part
   use law_state_m, only : slips
   use linear_solver_m, only : report_t, solve_linear
   use log_m, only : log_t, write_log, to_text
@@ -233,6 +235,8 @@ contains
     now%residual = norm2(u)
     now%worst = maxloc(abs(u), 1)
     u = abs(free_entries(step%equations, trial%motion(1:2, :), scales*trial%bodies))
+    if (allocated(trial%elements%start_dilatation)) u = u + free_entries(step%equations, &
+      stage_displacements(model, trial), 0.0_wp*scales)
     total = magnitudes(abs(trial%internal) + abs(trial%contact) + abs(trial%external), &
       abs(trial%body_load))
     do i = 1, matrix%n
@@ -261,6 +265,30 @@ contains
     end function magnitudes
 
   end subroutine measure_residual
+
+  !> Displacements that would strain the elements as their stresses do, which a second stage begins
+  !> with: its forces cancel at free nodes, but their round-off does not.
+  function stage_displacements(model, trial) result(u)
+    type(model_t), intent(in) :: model
+    type(trial_t), intent(in) :: trial
+    real(wp) :: u(2, model%mesh%n_node)
+    real(wp) :: stress(4)
+    integer :: slot, k
+
+    u = 0.0_wp
+    do slot = 1, model%layout%n_slot
+      if (model%layout%slot_element(slot) == 0) cycle
+      associate (nodes => model%layout%slot_nodes(:, slot), x => model%mesh%coordinates, &
+        material => model%materials(model%parts(slot_part(model%layout, slot))%material))
+        if (material%is_rigid) cycle
+        stress = stress_of_slot(model, trial%motion, trial%elements, slot)
+        do k = 1, size(nodes)
+          u(:, nodes(k)) = max(u(:, nodes(k)), &
+            norm2(stress)/material%bulk*norm2(x(:, nodes(3)) - x(:, nodes(1))))
+        end do
+      end associate
+    end do
+  end function stage_displacements
 
   !> The energy criterion of Kang, Lee & Shin (2023), or the round-off of the residual; other
   !> criteria where the deck sets them.
