@@ -4,6 +4,9 @@ import json
 import math
 import os
 import pathlib
+import subprocess
+import sys
+import time
 
 import conftest
 import numpy as np
@@ -403,6 +406,36 @@ def test_a_run_that_fails_ends_with_the_deck_and_the_reason(deck, tmp_path, tool
     deck.write_text(bar(PULLED.replace("1e4", "1e14")), encoding="ascii")
     done = tool("answer", deck, "--of", QUANTITY, "--within", "2%", "--folder", tmp_path / "out")
     assert done.returncode == 2 and "bar.k" in done.stderr and "error termination" in done.stderr
+
+
+@PROGRAM
+def test_a_finer_mesh_that_fails_leaves_the_best(tmp_path, tool, plain_pictures):
+    for level in (1, 2):
+        (tmp_path / f"plate_{level}.k").write_text(scenes.symmetric_plate(n_x=8 * level, n_y=4 * level), encoding="ascii")
+    (tmp_path / "plate_3.k").write_text(bar(PULLED.replace("1e4", "1e14")), encoding="ascii")
+    done = tool("answer", tmp_path / "plate_{level}.k", "--mesh-parameter", "level", "--of", "glstat:internal:largest", "--seconds", "1000",
+                "--within", "99%", "--folder", tmp_path / "out")
+    assert done.returncode == 2, done.stderr
+    facts = json.loads((tmp_path / "out/answer.json").read_text(encoding="utf-8"))
+    assert len(facts["runs"]) == 2 and facts["within"] is False and "error termination" in facts["reason"]
+
+
+@PROGRAM
+def test_a_command_that_is_stopped_stops_its_run(deck, tmp_path):
+    deck.write_text(bar(PULLED, end="1.0"), encoding="ascii")
+    command = [sys.executable, "-m", "slideline_tools.cli", "answer", deck, "--of", QUANTITY, "--within", "2%", "--folder", tmp_path / "out"]
+    with subprocess.Popen(command, env={**os.environ, "PYTHONPATH": str(conftest.ROOT / "tools")}, stderr=subprocess.PIPE, text=True) as started:
+        status = tmp_path / "out/mesh_1/status.out"
+        for _ in range(600):
+            if status.exists():
+                break
+            time.sleep(0.05)
+        started.terminate()
+        _, said = started.communicate(timeout=30)
+    assert started.returncode == 4 and "stopped" in said and "Traceback" not in said
+    before = status.stat().st_mtime_ns, (tmp_path / "out/mesh_1/bar.glstat.csv").stat().st_size
+    time.sleep(1.0)
+    assert before == (status.stat().st_mtime_ns, (tmp_path / "out/mesh_1/bar.glstat.csv").stat().st_size)
 
 
 @PROGRAM

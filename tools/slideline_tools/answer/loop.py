@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import time
 import typing
 
 import numpy as np
@@ -13,6 +14,7 @@ from slideline_tools.answer.estimate import Estimate, estimate
 from slideline_tools.answer.meshes import AdaptedMeshes, Meshes, MeshRun
 from slideline_tools.answer.quantity import Quantity
 from slideline_tools.names import counted
+from slideline_tools.program import RunError
 
 FIRST = (1, 2, 3)          # meshes that are always run, as far as the budget goes
 EXPLICIT = 3.0             # seconds go with this power of the mesh factor where two runs cannot tell
@@ -35,11 +37,12 @@ class Answer:
 
 @dataclasses.dataclass
 class Answers:
-    """The answers of one loop; `reached` where all are within what was asked for."""
+    """The answers of one loop; `reached` where all are within what was asked for, `failure` where a run ended it."""
 
     answers: list[Answer]
     runs: list[MeshRun]
     contact_type: int | None = None
+    failure: RunError | None = None
 
     @property
     def reached(self) -> bool:
@@ -61,12 +64,20 @@ def find(meshes: Meshes, quantities: typing.Sequence[Quantity], within: float | 
     while factor:
         about = f": about {seconds_of(runs, factor):.2g} s" if runs and not isinstance(meshes, AdaptedMeshes) else ""
         meshes.tell(f"mesh {factor}{about}")
-        run = meshes.run(factor)
+        begin = time.monotonic()
+        try:
+            run = meshes.run(factor)
+        except (RunError, KeyboardInterrupt) as problem:
+            if not runs:
+                raise
+            found.failure = problem if isinstance(problem, RunError) else None
+            reason = f"mesh {factor} ended it: {problem}" if found.failure else f"stopped in mesh {factor}"
+            break
         if runs and run.elements <= runs[-1].elements:
             raise UserError(f"{meshes.deck}: with {meshes.parameter} = {factor} the mesh stays as it is ({counted(run.elements, 'element')})")
         values = [quantity.of(run.outcome) for quantity in quantities]
         runs.append(run)
-        spent += 0.0 if run.kept else run.seconds
+        spent += 0.0 if run.kept else time.monotonic() - begin  # with the division of the mesh
         meshes.tell(f"mesh {factor}: {counted(run.elements, 'element')}, {run.updates:.3g} updates, "
              + (f"kept, took {run.seconds:.2g} s" if run.kept else f"{run.seconds:.2g} s") + "; "
              + ", ".join(f"{value:.6g}" for value in values))
@@ -84,7 +95,7 @@ def judged(quantities, runs, within) -> Answers:
     for quantity in quantities:
         values = [quantity.of(run.outcome) for run in runs]
         found = estimate([run.mesh for run in runs], values)
-        answers.append(Answer(quantity, values, found, None if within is None else bool(found.relative <= within)))
+        answers.append(Answer(quantity, values, found, None if within is None else bool(len(values) >= FIRST[-1] and found.relative <= within)))
     return Answers(answers, runs)
 
 

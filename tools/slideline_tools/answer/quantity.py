@@ -60,11 +60,13 @@ class Quantity:
             raise UserError(f"{self.text}: {self.table} has no rows")
         if len(series := table.series()) > 1:
             raise UserError(f"{self.text}: {self.table} has {len(series)} series: {'; '.join(map(table.entity_label, (key for key, _ in series[:8])))}"
-                            f"; choose one by {self.table}:{self.column}@{table.entity_columns[0]}=...")
+                            f"; choose one by {self.table}:{self.column}@{','.join(f'{name}=...' for name in table.entity_columns)}")
         return table["time"], values
 
     def field_series(self, outcome: Outcome) -> tuple[np.ndarray, np.ndarray]:
         """Times and values of a field: at a point of the initial mesh, else its extremes over all nodes or elements."""
+        if not (outcome.folder / f"{outcome.job}.vtkhdf").exists():
+            raise UserError(f"{self.text}: the deck asks for no states (*DATABASE_BINARY_D3PLOT)")
         results = outcome.results
         field = scalar_field(results, self.column)
         if not self.where:

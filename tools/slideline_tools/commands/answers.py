@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pathlib
+import signal
 import sys
 
 from slideline_tools import UserError
@@ -45,8 +46,12 @@ impulse, end or at=T, or field:NAME[@x=X,y=Y]:MEASURE. Exit status: 0 within, 1 
 def answer(options) -> int:
     """Find the answer, write and print it."""
     from slideline_tools.program import ENDINGS, RunError
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # a batch system stops it as a keyboard does, with its run
     try:
         return found_of(options)
+    except KeyboardInterrupt:
+        print("slideline-tools: answer: stopped", file=sys.stderr)
+        return NOT_REACHED
     except RunError as problem:
         print(f"slideline-tools: answer: {options.deck}: {problem}", file=sys.stderr)
         failed = problem.outcome is not None and problem.outcome.status != 1
@@ -54,6 +59,8 @@ def answer(options) -> int:
     except UserError as problem:
         print(f"slideline-tools: answer: {problem}", file=sys.stderr)
         return REFUSED
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def found_of(options) -> int:
@@ -89,7 +96,7 @@ def found_of(options) -> int:
     report.chart(found, folder / "answer.png")
     print(text.rstrip() if options.json else "\n".join(
         [report.table(found), *([report.choice(found, tried)] if tried else []), f"wrote {folder}/answer.json and answer.png"]))
-    return WITHIN if found.reached else NOT_REACHED
+    return WITHIN if found.reached else NOT_REACHED if found.failure is None else FAILED
 
 
 def chosen(loop, tried: list, seconds):
