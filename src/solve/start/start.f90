@@ -258,10 +258,11 @@ contains
     if (.not. allocated(model%walls)) return
     do i = 1, size(model%walls)
       associate (wall => model%walls(i))
-        if (wall%mass > 0.0_wp .and. any(mass(wall%nodes) >= wall%mass)) call raise(error, &
-          wall%source//': the mass '//to_text(wall%mass)//' of the wall is not above that of a ' &
-          //'node, '//to_text(maxval(mass(wall%nodes)))//', as a moving one''s must be', &
-          status_input)
+        if (.not. (wall%mass > 0.0_wp .and. any(mass(wall%nodes) >= wall%mass))) cycle
+        call raise(error, wall%source//': the mass '//to_text(wall%mass)//' of the wall is not ' &
+          //'above that of a node, '//to_text(maxval(mass(wall%nodes)))//', as a moving one''s ' &
+          //'must be', status_input)
+        return
       end associate
     end do
   end subroutine check_masses

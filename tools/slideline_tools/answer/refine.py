@@ -134,7 +134,8 @@ class Refinement(Division):
         """The lines of a block."""
         if block.keyword == "CONSTRAINED_ADAPTIVITY":
             return []
-        if block.keyword.startswith("CONTACT_2D_") and not next(self.finer, True):
+        is_interface = block.keyword.startswith("CONTACT_2D_") and "FORCE_TRANSDUCER" not in block.keyword
+        if is_interface and not next(self.finer, True):
             return [block.head, *block.lines]
         lines = super().block(block)
         if block.keyword == "BOUNDARY_PRESCRIBED_MOTION_NODE":  # hanging nodes follow their parents
