@@ -260,7 +260,8 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(snapshot_t), intent(inout) :: snapshot
-    real(wp) :: shares(4), v(2), squares(2, size(snapshot%velocity, 2))
+    real(wp) :: shares(4), v(2)
+    real(wp), allocatable :: squares(:, :) !! (2, n_node) of velocity
     integer :: i, k, slot, i_part
 
     if (.not. allocated(snapshot%velocity)) return

@@ -260,8 +260,7 @@ contains
       associate (wall => model%walls(i))
         if (.not. (wall%mass > 0.0_wp .and. any(mass(wall%nodes) >= wall%mass))) cycle
         call raise(error, wall%source//': the mass '//to_text(wall%mass)//' of the wall is not ' &
-          //'above that of a node, '//to_text(maxval(mass(wall%nodes)))//', as a moving one''s ' &
-          //'must be', status_input)
+          //'above that of a node, '//to_text(maxval(mass(wall%nodes))), status_input)
         return
       end associate
     end do
