@@ -4,7 +4,8 @@
 !> operation, with arithmetic traps off.
 module deck_expression_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-  use, intrinsic :: ieee_exceptions, only : ieee_all, ieee_set_halting_mode
+  use, intrinsic :: ieee_exceptions, only : ieee_all, ieee_set_flag, &
+    ieee_set_halting_mode
   use deck_parameter_table_m, only : parameters_t, find_parameter
   use kinds_m, only : wp, pi
   use text_m, only : upper_case, read_real, number_good
@@ -140,6 +141,7 @@ contains
       end if
     end select
     if (.not. abs(value) <= largest) call set_error(scanner, 'the value is too large')
+    call ieee_set_flag(ieee_all, .false.) ! what is reported must not stop a checked build later
   end subroutine operate
 
   !> Parse signs, a primary, and powers from the right, which bind stronger than a sign, as in
@@ -305,6 +307,7 @@ contains
       value = a(3) + (a(5) - a(3))*s**2*(3.0_wp - 2.0_wp*s)
     end select
     if (.not. ieee_is_finite(value)) call set_error(scanner, word//' is not defined there')
+    call ieee_set_flag(ieee_all, .false.)
   end subroutine apply_function
 
 end module deck_expression_m
