@@ -48,11 +48,13 @@ def test_what_nodes_cannot_carry_is_named(slideline, deck):
     assert ".k:21: *PART_INERTIA: rigid part 1: no masses above 0 at its nodes have the mass 40" in found
 
 
-def test_elements_that_share_its_nodes_are_named(slideline):
-    """Their mass there is part of TM: a warning with file and line."""
-    text = impact().text()
-    done = slideline("d=out", deck=text.replace("*ELEMENT_SHELL\n", "*ELEMENT_SHELL\n900,2,1,2,6,5\n", 1))
-    assert "*PART_INERTIA: 4 nodes of this part belong to elements of other parts too" in done.stderr + done.stdout
+def test_elements_that_share_its_nodes_are_named(slideline, tmp_path):
+    """Their mass there, and that of *ELEMENT_MASS, is part of TM: a warning with file and line."""
+    heavy = impact().text().replace("*ELEMENT_SHELL\n", "*ELEMENT_MASS\n1,3,5.0\n*ELEMENT_SHELL\n", 1)
+    done = slideline("d=out", deck=heavy.replace("*ELEMENT_SHELL\n", "*ELEMENT_SHELL\n900,2,1,2,6,5\n", 1))
+    assert "*PART_INERTIA: 5 nodes of this part have an *ELEMENT_MASS or belong to elements" in done.stderr + done.stdout
+    assert slideline("d=heavy", deck=heavy).returncode == 0
+    assert numbers(tmp_path / "heavy/job.matsum.csv", "mass")[0] == pytest.approx(40.0, rel=1e-12)
 
 
 def test_a_light_wall_is_named(slideline):

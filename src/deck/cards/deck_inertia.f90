@@ -40,7 +40,7 @@ contains
     if (part > 0) inertias = [inertias, inertia]
   end subroutine read_inertia
 
-  !> Give the rigid bodies their inertia. Mesh and bodies have been made.
+  !> Give the rigid bodies their inertia. Mesh, bodies and nodal masses have been made.
   subroutine set_inertias(deck, inertias, model)
     type(deck_t), intent(inout) :: deck
     type(inertia_t), intent(in) :: inertias(:)
@@ -74,7 +74,8 @@ contains
     end do
   end subroutine set_inertias
 
-  !> Warn of nodes of elements of other parts: the mass of these elements there is part of TM.
+  !> Warn of nodes with other masses, of elements of other parts or *ELEMENT_MASS: they are part
+  !> of TM.
   subroutine warn_of_shared(deck, line, model, body)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line
@@ -90,10 +91,12 @@ contains
       if (model%mesh%element_part(i) == body%part) cycle
       is_shared(model%mesh%element_nodes(:, i)) = .true.
     end do
+    if (allocated(model%conditions%lumped_masses)) &
+      is_shared(model%conditions%lumped_masses%node) = .true.
     i = count(is_own .and. is_shared)
     if (i > 0) call line_warning(deck, line, 'shared inertia'//to_text(line), to_text(i) &
-      //' nodes of this part belong to elements of other parts too: the mass of these elements ' &
-      //'there counts as part of TM')
+      //' nodes of this part have an *ELEMENT_MASS or belong to elements of other parts too: ' &
+      //'that mass counts as part of TM')
   end subroutine warn_of_shared
 
 end module deck_inertia_m
