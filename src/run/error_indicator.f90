@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Error indicator of each interface at instants that are written: contact pressure against the
-!> stress of the elements at the surface (doc/theory/contact.md, section 8.1), and energy of the
-!> springs against that of the bodies (section 8.2).
+!> stress of the elements at the surface (doc/theory/contact.md, section 8.1), which their errors
+!> contain too, and energy of the springs against that of the bodies (section 8.2).
 module error_indicator_m
   use contact_facets_m, only : follow_arcs
   use law_state_m, only : contact_estimate_t
@@ -42,7 +42,7 @@ contains
     type(contact_t) :: contact
     type(contact_estimate_t) :: side
     type(spring_bound_t) :: bound(1)
-    real(wp), allocatable :: unused(:)
+    real(wp), allocatable :: master_stress(:)
     real(wp) :: element_limit, scale(1)
     integer :: i
 
@@ -68,9 +68,15 @@ contains
       associate (slaves => snapshot%slaves(i), result => snapshot%interfaces(i))
         call add_side(model, state, rows, contact%slave, slaves%pressure, &
           others(2*i - 1)%pressure, side, slaves%row_stress)
+        if (allocated(snapshot%error)) call add_jumps(model, state, contact%slave, &
+          slaves%pressure, others(2*i - 1)%pressure, slaves%row_stress, snapshot%error)
         ! Self contact has slave nodes only.
-        if (.not. contact%is_self) call add_side(model, state, rows, contact%master, &
-          slaves%master_pressure, others(2*i)%pressure, side, unused)
+        if (.not. contact%is_self) then
+          call add_side(model, state, rows, contact%master, slaves%master_pressure, &
+            others(2*i)%pressure, side, master_stress)
+          if (allocated(snapshot%error)) call add_jumps(model, state, contact%master, &
+            slaves%master_pressure, others(2*i)%pressure, master_stress, snapshot%error)
+        end if
         ! Accelerations of nodes at rigid walls and of coupled nodes are not known here.
         side%still = min(side%still, side%misfit)
         result%row_energy = side%rows
@@ -130,6 +136,31 @@ contains
       side%still = side%still + (pressure(k) - row_stress(k) - moved(k)/area(k))**2*area(k)
     end do
   end subroutine add_side
+
+  !> Add the energy of the jump between contact pressure and element stress at loaded nodes to the
+  !> errors of the elements at the segments: half of the squared jump at each end.
+  subroutine add_jumps(model, state, surface, own, others, stress, errors)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: own(:)     !! contact pressure of its nodes, Pa
+    real(wp), allocatable, intent(in) :: others(:) !! contact pressure of other interfaces there
+    real(wp), intent(in) :: stress(:)              !! element stress at its nodes
+    real(wp), intent(inout) :: errors(:)           !! (n_element) J per metre or per radian
+    real(wp) :: jump(surface%n_node)
+    integer :: s
+
+    jump = own - stress
+    if (allocated(others)) jump = jump + others
+    where (.not. abs(own) > 0.0_wp) jump = 0.0_wp
+    do s = 1, surface%n_segment
+      associate (element => surface%segment_element(s), ends => surface%segments(:, s))
+        if (has_stress(model, state, element)) errors(element) = errors(element) &
+          + elastic_energy(model, state, element, norm2(jump(ends))*[sqrt(0.5_wp), 0.0_wp, 0.0_wp, &
+          0.0_wp])
+      end associate
+    end do
+  end subroutine add_jumps
 
   !> Add one instant to the sums of the run.
   pure subroutine add_instant(cycle, dt, side, result, nodal_forces, estimate)

@@ -10,6 +10,7 @@ module face_stress_m
   use model_m, only : model_t
   use snapshot_m, only : slave_result_t
   use state_m, only : state_t
+  use stress_error_m, only : energy_density
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -247,33 +248,30 @@ contains
     end associate
   end function opposite_element
 
-  !> Elastic energy of an element from its stress and the moduli K and G of its material, J per
-  !> metre or per radian; an estimate for nonlinear laws.
-  function elastic_energy(model, state, element) result(energy)
+  !> Elastic energy of an element from its stress, or from `stress`, and the moduli of its material,
+  !> J per metre or per radian; an estimate for nonlinear laws.
+  function elastic_energy(model, state, element, stress) result(energy)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: element
+    real(wp), intent(in), optional :: stress(4) !! xx yy zz xy
     real(wp) :: energy
-    real(wp) :: s(4), d31(2), d42(2), centre(2), volume, mean, shear_square
+    real(wp) :: s(4), d31(2), d42(2), centre(2), volume
 
     associate (slot => model%layout%element_slot(element))
       associate (nodes => model%layout%slot_nodes(:, slot), &
-        material => model%materials(model%parts(slot_part(model%layout, slot))%material))
+        part => model%parts(slot_part(model%layout, slot)))
         s = stress_of_slot(model, state%motion, state%elements, slot)
+        if (present(stress)) s = stress
         d31 = position_of(model, state, nodes(3)) - position_of(model, state, nodes(1))
         d42 = position_of(model, state, nodes(4)) - position_of(model, state, nodes(2))
         volume = 0.5_wp*(d31(1)*d42(2) - d42(1)*d31(2))
         centre = centre_of(model, state, element)
         if (model%is_axisymmetric) volume = volume*centre(1)
-        volume = volume*model%sections(model%parts(slot_part(model%layout, slot))%section)%thickness
-        mean = sum(s(:3))/3.0_wp
-        shear_square = sum((s(:3) - mean)**2) + 2.0_wp*s(4)**2
-        energy = 0.0_wp
-        if (material%bulk > 0.0_wp) energy = 0.5_wp*mean**2/material%bulk
-        if (material%shear > 0.0_wp) energy = energy + 0.25_wp*shear_square/material%shear
+        volume = volume*model%sections(part%section)%thickness
+        energy = volume*energy_density(model%materials(part%material), s)
       end associate
     end associate
-    energy = volume*energy
   end function elastic_energy
 
   !> Mean of the corners of an element, m.

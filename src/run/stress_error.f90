@@ -13,7 +13,7 @@ module stress_error_m
   use state_m, only : state_t
   implicit none
   private
-  public :: estimate_errors
+  public :: estimate_errors, energy_density
 
 contains
 
@@ -96,7 +96,7 @@ contains
 
   end subroutine estimate_errors
 
-  !> Elastic energy of a stress, J/m^3.
+  !> Elastic energy of a stress from the moduli K and G of the material, J/m^3.
   pure function energy_density(material, stress) result(density)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: stress(4) !! xx yy zz xy

@@ -248,6 +248,58 @@ def check_taylor(run):
     run.report("Taylor bar: updates over those of the whole bar divided", outcomes[1][3] / outcomes[0][3])
 
 
+def expected_errors(places, quads, stress, jump, segments):
+    """Energy of the nodal means less the stress of each element, 2x2 points, and of the jumps at the loaded ends of segments."""
+    s = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    shapes = [0.25 * (1 + s[:, 0] * x) * (1 + s[:, 1] * y) for x, y in s / np.sqrt(3.0)]
+    slopes = [0.25 * np.array([s[:, 0] * (1 + s[:, 1] * y), s[:, 1] * (1 + s[:, 0] * x)]) for x, y in s / np.sqrt(3.0)]
+    volumes = np.array([[np.linalg.det(slope @ places[quad]) for slope in slopes] for quad in quads])
+    sums, weights = np.zeros((len(places), 4)), np.zeros(len(places))
+    for quad, volume, row in zip(quads, volumes.sum(1), stress):
+        sums[quad] += volume * row
+        weights[quad] += volume
+    means = sums / weights[:, None]
+
+    def density(row):
+        trace = row[:3].sum()
+        return ((1 + POISSON) * (row[:3] @ row[:3] + 2.0 * row[3] ** 2) - POISSON * trace ** 2) / (2.0 * YOUNG)
+
+    energy = np.array([sum(volume * density(shape @ means[quad] - row) for volume, shape in zip(parts, shapes))
+                       for quad, parts, row in zip(quads, volumes, stress)])
+    for element, ends in segments:
+        energy[element] += volumes[element].sum() * 0.5 * (jump[ends] @ jump[ends]) / (2.0 * YOUNG)
+    return energy
+
+
+def check_errors(run):
+    """The field `error` of two bodies of one row in contact, from stress and contact pressure of the same state."""
+    deck = Deck("error of each element").control(0.006).hourglass(4, 0.1).add("*DATABASE_ERROR_INDICATOR")
+    meshes = [grid(3, 1, 0.7, 0.2, (0.2, 0.0)), grid(4, 1, 1.0, 0.3, (0.0, -0.3))]
+    ids = [deck.part(part).elastic(RHO, YOUNG, POISSON, part).mesh(*mesh, part=part) for part, mesh in enumerate(meshes, 1)]
+    deck.node_set(1, ids[0][:4]).node_set(2, ids[1][:4:-1]).node_set(3, ids[0]).fix(ids[1][:5], x=1, y=1)
+    deck.add("*INITIAL_VELOCITY", (3,), (0.0, -1.0)).contact(1, 2, 7, 1.0e7)
+    result = run.program(deck.output(plot=0.006, glstat=0.006), name="errors")
+    places = result.points("Points")[-1, :, :2]
+    stress, pressure = result.cells("stress")[-1], result.points("contact_pressure")[-1]
+    found = []
+    for part, (nodes, (_, quads)) in enumerate(zip((ids[0] - 1, ids[1] - 1), meshes)):
+        elements = slice(0, 3) if part == 0 else slice(3, 7)
+        # The pressure -s_nn of an element of the only row, with the normal of its face, by lengths at the nodes.
+        faces = [[a, a + 1] for a in range(3)] if part == 0 else [[a + 6, a + 5] for a in range(4)]
+        row, length = np.zeros(len(nodes)), np.zeros(len(nodes))
+        for ends, (xx, yy, _, xy) in zip(faces, stress[elements, :4]):
+            along = np.diff(places[nodes[ends]], axis=0)[0]
+            size = np.linalg.norm(along)
+            x, y = along[1] / size, -along[0] / size
+            row[ends] -= size * (xx * x ** 2 + yy * y ** 2 + 2.0 * xy * x * y)
+            length[ends] += size
+        loaded = (pressure[nodes] != 0.0) & (length > 0.0)
+        jump = np.where(loaded, pressure[nodes] - row / np.where(length > 0.0, length, 1.0), 0.0)
+        run.true(f"two bodies of one row, part {part + 1}: nodes are loaded", loaded.any())
+        found.append(expected_errors(places[nodes], np.array(quads), stress[elements, :4], jump, enumerate(faces)))
+    run.check("two bodies of one row: error of elements", result.cells("error")[-1], np.concatenate(found))
+
+
 def check(run):
     for points, implicit in ((None, False), (4, False), (4, True)):
         for n in (1, 3):
@@ -257,3 +309,4 @@ def check(run):
     check_step(run)
     check_contact_patch(run)
     check_taylor(run)
+    check_errors(run)
