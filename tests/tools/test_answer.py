@@ -15,11 +15,12 @@ import pytest
 from slideline_tools import UserError, scenes
 from slideline_tools.answer.divide import Mesh, divided
 from slideline_tools.answer.estimate import estimate
-from slideline_tools.answer.loop import Answer, Answers, following
+from slideline_tools.answer.loop import Answer, Answers, find, following
 from slideline_tools.answer.meshes import MeshRun
-from slideline_tools.answer.quantity import Quantity, parse
+from slideline_tools.answer.quantity import Quantity, parse, weights_at
+from slideline_tools.answer.report import rounded_up
 from slideline_tools.effective_deck import read_blocks
-from slideline_tools.program import Outcome
+from slideline_tools.program import STOPPED, Outcome, RunError
 
 PROGRAM = pytest.mark.skipif("SLIDELINE" not in os.environ, reason="SLIDELINE is not set")
 #: a bar of 2 by 1 elements, held at the left, with a part of its own for more cards
@@ -286,7 +287,45 @@ def test_the_loop_ends_when_the_budget_does():
     assert following(Answers([one], runs[:1]), runs[:1], 0.01, 5.0)[0] == 0
 
 
+def test_a_run_that_takes_too_long_leaves_the_best(outcome):
+    """Mesh 3 is stopped: the answer of two meshes stands, and says why."""
+    class Long:
+        def tell(self, line):
+            pass
+
+        def run(self, factor, limit):
+            if factor == 3:
+                assert 400.0 < limit <= 1.5 * 400.0
+                raise RunError("mesh_3/x: stopped after 600 s", Outcome(pathlib.Path(), "x", {}, STOPPED, ""))
+            return MeshRun(factor, 10 * factor, 100, 1.0, outcome)
+    found = find(Long(), [parse("field:mises:largest")], 0.01, 400.0)
+    assert len(found.runs) == 2 and found.failure is None
+    assert found.answers[0].reason == "mesh 3 ended it: mesh_3/x: stopped after 600 s (--seconds)"
+
+
+def test_what_just_misses_a_target_is_seen_to():
+    assert [rounded_up(value) for value in (1.03, 1.0001, 0.53, 12.341, 0.0)] == ["1.03", "1.01", "0.53", "12.4", "0"]
+
+
 # ---- quantities ------------------------------------------------------------------------------
+
+def test_linear_fields_are_exact_at_any_point():
+    """On a distorted mesh, of nodes inside elements, of elements at the boundary too; a node has its own value."""
+    columns, rows = 6, 5
+    x = np.array([(i + 0.2 * math.sin(3 * i + 5 * j), j + 0.2 * math.cos(7 * i + 2 * j)) for j in range(rows) for i in range(columns)])
+    cells = np.array([[k, k + 1, k + columns + 1, k + columns] for j in range(rows - 1) for k in range(j * columns, (j + 1) * columns - 1)])
+    centres, parts = x[cells].mean(axis=1), np.ones(len(cells))
+
+    def of(places):
+        return 3.0 + 2.0 * places[..., 0] - 5.0 * places[..., 1]
+    for point in ([0.6, 0.5], [2.3, 1.7], [3.9, 3.2], x[0], x[8], 0.5 * (x[0] + x[1])):
+        assert weights_at(x, cells, parts, point, True) @ of(x) == pytest.approx(of(np.asarray(point)))
+        assert weights_at(x, cells, parts, point, False) @ of(centres) == pytest.approx(of(np.asarray(point)))
+    assert weights_at(x, cells, parts, x[8], True)[8] == pytest.approx(1.0)
+    near = weights_at(x, cells, np.where(centres[:, 0] < 2.5, 1, 2), [2.3, 1.7], False)
+    assert not np.any(near[centres[:, 0] > 2.5])   # not across to another part
+
+
 
 def test_words_of_a_quantity():
     assert parse("rcforc:fy@interface=1,side=slave:largest") == Quantity(
@@ -316,7 +355,7 @@ def outcome(tmp_path):
 @pytest.mark.parametrize("text, value", [
     ("rcforc:fy@side=slave:largest", 4.0), ("rcforc:fy@side=master:smallest", -4.0), ("rcforc:fy@interface=1,side=slave:impulse", 6.5),
     ("rcforc:fy@side=slave:mean", 6.5 / 3.0), ("rcforc:fy@side=slave:end", 1.0), ("rcforc:fy@side=slave:at=1", 2.0),
-    ("field:mises:largest", 3e6), ("field:mises@x=1.5,y=0.5:end", 2e6), ("field:displacement:y:largest", 0.2),
+    ("field:mises:largest", 3e6), ("field:mises@x=1.5,y=0.5:end", 2e6), ("field:mises@x=0,y=0:end", 5e5), ("field:displacement:y:largest", 0.2),
     ("field:displacement:x@x=2,y=0:at=0.25", 0.05)])
 def test_values_of_quantities(outcome, text, value):
     assert parse(text).of(outcome) == pytest.approx(value)
@@ -368,7 +407,8 @@ def test_an_answer_is_found_written_and_kept(deck, tmp_path, tool, plain_picture
 def test_runs_of_a_file_that_has_changed_are_not_kept(deck, tmp_path, tool, plain_pictures, adapt):
     part = tmp_path / "parts/bar.inc"
     part.parent.mkdir()
-    deck.write_text("*KEYWORD\n*INCLUDE_PATH\nparts\n*INCLUDE\nbar.inc\n*END\n", encoding="ascii")
+    deck.write_text("*KEYWORD\n*INCLUDE\nfirst.inc\n*END\n", encoding="ascii")
+    (tmp_path / "first.inc").write_text("*INCLUDE_PATH\nparts\n*INCLUDE\nbar.inc\n", encoding="ascii")
     words = ("answer", deck, "--of", QUANTITY, "--within", "90%", "--folder", tmp_path / "out", *adapt)
     for end in ("2e-5", "3e-5"):
         part.write_text(bar(PULLED + "*DATABASE_BINARY_D3PLOT\n1e-5,\n", end=end), encoding="ascii")
@@ -396,6 +436,11 @@ def test_bad_requests_are_refused(deck, tmp_path, tool):
         done = tool("answer", deck, "--of", quantity, "--within", "2%", "--folder", tmp_path / "out")
         assert done.returncode == 1 and text in done.stderr
     assert tool("answer", tmp_path / "none.k", "--of", QUANTITY, "--within", "2%").returncode == 1
+    done = tool("answer", deck, "--of", QUANTITY, "--within", "2%", "--folder", "/dev/null/out")
+    assert done.returncode == 1 and done.stderr.splitlines()[-1] == (
+        "slideline-tools: answer: cannot make the folder /dev/null/out/mesh_1: Not a directory")
+    done = tool("answer", deck, "--of", QUANTITY, "--within", "2%", "--withn", "2%")
+    assert done.returncode == 1 and "usage: slideline-tools answer" in done.stderr and "unrecognized arguments: --withn" in done.stderr
     deck.write_text(bar("*MAT_NONSENSE\n1,\n"), encoding="ascii")
     done = tool("answer", deck, "--of", QUANTITY, "--within", "2%", "--folder", tmp_path / "out")
     assert done.returncode == 1 and "MAT_NONSENSE" in done.stderr and "bar.k" in done.stderr
@@ -406,6 +451,13 @@ def test_a_run_that_fails_ends_with_the_deck_and_the_reason(deck, tmp_path, tool
     deck.write_text(bar(PULLED.replace("1e4", "1e14")), encoding="ascii")
     done = tool("answer", deck, "--of", QUANTITY, "--within", "2%", "--folder", tmp_path / "out")
     assert done.returncode == 2 and "bar.k" in done.stderr and "error termination" in done.stderr
+
+
+@PROGRAM
+def test_a_first_run_that_takes_too_long_is_stopped(deck, tmp_path, tool):
+    deck.write_text(bar(PULLED, end="10.0"), encoding="ascii")
+    done = tool("answer", deck, "--of", QUANTITY, "--seconds", "0.5", "--folder", tmp_path / "out")
+    assert done.returncode == 4 and "stopped after 0.75 s" in done.stderr
 
 
 @PROGRAM

@@ -108,6 +108,8 @@ def test_hertz_is_refined_twice(tmp_path, capsys):
             assert main(["refine", str(tmp_path / name), "--fraction", "0.3", "--surfaces", "-o", str(tmp_path / f"{following}.k"),
                          "--program", os.environ["SLIDELINE"]]) == 0
             assert "elements divided" in capsys.readouterr().out
+    assert main(["refine", str(tmp_path / "third"), "-o", "/dev/null/out/x.k", "--program", os.environ["SLIDELINE"]]) == 2
+    assert capsys.readouterr().err == "slideline-tools: cannot make the folder /dev/null/out: Not a directory\n"
     model = check_deck(tmp_path / "third.k", os.environ["SLIDELINE"])
     side = max((model.interfaces[0].slave, model.interfaces[0].master), key=lambda one: np.ptp(model.points[one.nodes, 1]))
     x = model.points[side.nodes]

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from slideline_tools import UserError, scenes
+from slideline_tools import scenes
 from slideline_tools.histories import History
 from slideline_tools.studies import __main__ as command
 from slideline_tools.studies.framework.job import Options
@@ -211,11 +211,3 @@ def test_page(short_study):
     assert len(lines) == 1 and lines[0].count("same bits") == 3
     assert len(re.findall(r"^\| [1-7] .*\| yes \|$", page, re.MULTILINE)) == 7
     assert (short_study / "doc" / "pictures" / "simplify.png").stat().st_size < 100_000
-
-
-def test_log_without_a_limit(tmp_path):
-    (tmp_path / "x.log").write_text("first time step 1.0E-07, smallest L/c of the elements 2.5E-07\n")
-    assert simplify.element_limit(tmp_path / "x.log") == 2.5e-7
-    (tmp_path / "x.log").write_text("nothing\n")
-    with pytest.raises(UserError, match="no limit"):
-        simplify.element_limit(tmp_path / "x.log")

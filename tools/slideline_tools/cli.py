@@ -71,14 +71,18 @@ def completion(options):
 
 
 def one_line(problem):
-    """The text of an exception in one line."""
+    """The text of an exception in one line; of a file its name and what is wrong with it."""
+    if isinstance(problem, OSError) and problem.filename is not None and problem.strerror:
+        return f"{problem.filename}: {problem.strerror}"
     return " ".join(str(problem).split())
 
 
 def main(arguments=None):
     """Entry point: returns 0 when done, 1 when a comparison failed, 2 when it could not be done,
     141 when whoever reads the output went away."""
-    options = build_parser().parse_args(arguments)
+    options, unknown = build_parser().parse_known_args(arguments)
+    if unknown:  # by the command, whose usage and exit status it is
+        options.parser.error(f"unrecognized arguments: {' '.join(unknown)}")
     try:
         status = options.run(options)
         sys.stdout.flush()

@@ -54,7 +54,7 @@ def output(path: str | os.PathLike, inputs=()) -> pathlib.Path:
     that other names of it (hard links) keep what they have; UserError where anything else stands
     there, or one of the files that are read."""
     path = pathlib.Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    folder(path.parent)
     if not os.path.lexists(path):
         return path
     if not stat.S_ISREG(path.lstat().st_mode):
@@ -63,6 +63,15 @@ def output(path: str | os.PathLike, inputs=()) -> pathlib.Path:
         if read.exists() and read.samefile(path):
             raise UserError(f"cannot write {path}: it is {read}, which is read; name another file")
     path.unlink()
+    return path
+
+
+def folder(path: pathlib.Path) -> pathlib.Path:
+    """A folder, made with its parents; UserError where that cannot be."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise UserError(f"cannot make the folder {path}: {problem.strerror}") from problem
     return path
 
 

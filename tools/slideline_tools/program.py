@@ -31,7 +31,7 @@ OVERRIDES = (*OF_CONTACT, "endtim", "dt", "tssfac")
 #: exit status -> words
 ENDINGS = {0: "normal termination", 1: "refused", 2: "error termination", 3: "trouble with files",
            4: "stopped on request"}
-REFUSED = 1
+REFUSED, STOPPED = 1, 4
 MOST_MESSAGE = 2000   # characters of what the program said
 LONGEST_NAME = 200    # of a folder, in characters
 
@@ -133,14 +133,14 @@ def words_of(parameters: typing.Mapping[str, typing.Any]) -> list[str]:
 
 def run(deck: str | os.PathLike, folder: str | os.PathLike | None = None, *,
         program: str | os.PathLike | None = None, threads: int = 1, check: bool = True,
-        **parameters: typing.Any) -> Outcome:
+        limit: float | None = None, **parameters: typing.Any) -> Outcome:
     """Run a deck and wait for its end.
 
     `folder` of the results (default: results/<deck>); `parameters` are what may be changed of every
     deck (ctype, ngauss, pen, punit, pent, vdc, fs, fd, dc, vc, tfac, target, smooth, endtim, dt,
     tssfac; of interface 2 alone **{"ctype.2": 6}), and otherwise a *PARAMETER of the deck (**{"p:dt": 1e-7}
     where it has one of those names). RunError where the run does not end normally, unless `check`
-    is False.
+    is False. After `limit` seconds the run is stopped.
     """
     deck = pathlib.Path(deck)
     if not deck.is_file():
@@ -149,9 +149,11 @@ def run(deck: str | os.PathLike, folder: str | os.PathLike | None = None, *,
     command = [find_program(program), f"i={deck}", f"d={folder}", f"ncpu={threads}", "quiet=1",
                *words_of(parameters)]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=limit)
     except OSError as problem:
         raise RunError(not_run(command[0], problem)) from problem
+    except subprocess.TimeoutExpired as problem:
+        raise RunError(f"{folder / deck.stem}: stopped after {limit:.3g} s", Outcome(folder, deck.stem, dict(parameters), STOPPED, "")) from problem
     outcome = Outcome(folder, deck.stem, dict(parameters), done.returncode, done.stderr.strip())
     if check and not outcome.ended_well:
         raise RunError(failure(outcome), outcome)

@@ -14,10 +14,10 @@ SINK = 5.0e-3
 STEP = 5.0e-4
 
 
-def disc():
-    """Points and quads of a disc about the origin: a regular polygon, stretched to the circle."""
+def disc(cells=HALF):
+    """Points and quads of a disc about the origin: a regular polygon, `cells` elements on half a side, stretched to the circle."""
     angles = 2.0 * np.pi * np.arange(CORNERS) / CORNERS
-    points, quads = polygon_quads(RADIUS * np.column_stack([np.cos(angles), np.sin(angles)]), HALF)
+    points, quads = polygon_quads(RADIUS * np.column_stack([np.cos(angles), np.sin(angles)]), cells)
     distance = np.hypot(*points.T)
     half = np.pi / CORNERS
     off = (np.arctan2(points[:, 1], points[:, 0]) + 4.0 * np.pi) % (2.0 * half) - half
@@ -29,12 +29,12 @@ def disc():
     return reach[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]), quads
 
 
-def rolling(kind, friction, slope, speed, end, way, exchanged=False, small=False, vdc=0.0):
+def rolling(kind, friction, slope, speed, end, way, exchanged=False, small=False, vdc=0.0, cells=HALF):
     """Rigid disc on a rigid plate, gravity turned by `slope`. `small`: mm, ms and kg instead of SI units."""
     length, time = (1.0e3, 1.0e3) if small else (1.0, 1.0)
     deck = Deck(f"rigid disc on a plate, type {kind}")
     deck.control(end * time, dt=STEP * time)
-    points, quads = disc()
+    points, quads = disc(cells)
     # The disc starts about where its weight is carried, so that it does not bounce.
     points = points + (0.0, RADIUS - 0.9 * SINK)
     mass = lumped_mass(points, quads, RHO)

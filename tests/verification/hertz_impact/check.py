@@ -30,11 +30,11 @@ def line(cell, fine, size, grown):
     return np.concatenate([start, graded(start[-1], size, cell, grown, 1)[1:]])
 
 
-def ball(cell):
+def ball(cell, grown=(12, 16)):
     """A whole sphere with its lowest point at 0: a rectangle u in 0..1, v in -1..1 mapped on half of the disc, r = u
-    sqrt(1 - v^2/2), y = v sqrt(1 - u^2/2), with fine cells where v = -1 and u = 0; columns, rows too."""
+    sqrt(1 - v^2/2), y = v sqrt(1 - u^2/2), with fine cells where v = -1 and u = 0, then `grown` ones; columns, rows too."""
     fine = cell * np.sqrt(2.0) / BALL
-    u, v = line(fine, 9, 1.0, 12), line(fine, 4, 2.0, 16) - 1.0
+    u, v = line(fine, 9, 1.0, grown[0]), line(fine, 4, 2.0, grown[1]) - 1.0
     points = np.array([(BALL * a * np.sqrt(1.0 - 0.5 * b * b), BALL * (1.0 + b * np.sqrt(1.0 - 0.5 * a * a)))
                        for b in v for a in u])
     points[np.abs(points) < 1e-15] = 0.0
@@ -69,14 +69,14 @@ def half_space(kind):
     return deck.output(plot=40.0e-6, glstat=0.2e-6, rcforc=0.1e-6, matsum=0.1e-6)
 
 
-def collision(kind):
+def collision(kind, edge=EDGE, grown=(12, 16)):
     deck = Deck(f"two steel spheres collide, type {kind}")
     deck.control(70.0e-6, scale=0.6)
     deck.add("*SECTION_SHELL", (1, 15), (1.0,)).hourglass(4, 0.05)
     ids, gap = [], 1.0e-9
-    for part, cell in ((1, EDGE), (2, EDGE / RATIO)):
+    for part, cell in ((1, edge), (2, edge / RATIO)):
         deck.part(part, section=1).elastic(DENSITY, YOUNG, POISSON, part)
-        points, columns, rows = ball(cell)
+        points, columns, rows = ball(cell, grown)
         quads = np.array(grid_quads(columns - 1, rows - 1))
         if part == 2:
             points, quads = points * [1.0, -1.0] - [0.0, gap], quads[:, ::-1]

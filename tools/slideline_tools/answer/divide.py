@@ -233,6 +233,11 @@ class Mesh:
 
 # ---- the deck --------------------------------------------------------------------------------
 
+def node_sets(model) -> dict[int, list[int]]:
+    """The nodes of the node sets of a `draw.model.Model`, in their order, as the program has them."""
+    return {one.id: model.node_ids[one.nodes].tolist() for one in model.node_sets.values()}
+
+
 def divided(text: str, sets: dict[int, list[int]], count: int) -> str:
     """The effective deck `text` on its mesh divided by `count`; `sets`: the nodes of its node sets as the program has
     them. UserError where something in it cannot be carried along."""

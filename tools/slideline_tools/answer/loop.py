@@ -14,7 +14,7 @@ from slideline_tools.answer.estimate import Estimate, estimate
 from slideline_tools.answer.meshes import AdaptedMeshes, Meshes, MeshRun
 from slideline_tools.answer.quantity import Quantity
 from slideline_tools.names import counted
-from slideline_tools.program import RunError
+from slideline_tools.program import STOPPED, RunError
 
 FIRST = (1, 2, 3)          # meshes that are always run, as far as the budget goes
 EXPLICIT = 3.0             # seconds go with this power of the mesh factor where two runs cannot tell
@@ -22,6 +22,7 @@ SHORT = 0.1                # seconds of a run that tell nothing of that
 MOST = 2                   # times finer than the finest at a step, since no prediction is sure
 MANY = 1000                # more than any mesh that is run
 BUDGET = 600.0             # seconds, where none are given
+PATIENCE = 1.5             # times the seconds left after which a run is stopped
 
 
 @dataclasses.dataclass
@@ -66,12 +67,12 @@ def find(meshes: Meshes, quantities: typing.Sequence[Quantity], within: float | 
         meshes.tell(f"mesh {factor}{about}")
         begin = time.monotonic()
         try:
-            run = meshes.run(factor)
+            run = meshes.run(factor, PATIENCE * (limit - spent))
         except (RunError, KeyboardInterrupt) as problem:
             if not runs:
                 raise
-            found.failure = problem if isinstance(problem, RunError) else None
-            reason = f"mesh {factor} ended it: {problem}" if found.failure else f"stopped in mesh {factor}"
+            found.failure = problem if isinstance(problem, RunError) and not is_stopped(problem) else None
+            reason = f"mesh {factor} ended it: {problem}{' (--seconds)' * (found.failure is None)}" if str(problem) else f"stopped in mesh {factor}"
             break
         if runs and run.elements <= runs[-1].elements:
             raise UserError(f"{meshes.deck}: with {meshes.parameter} = {factor} the mesh stays as it is ({counted(run.elements, 'element')})")
@@ -87,6 +88,11 @@ def find(meshes: Meshes, quantities: typing.Sequence[Quantity], within: float | 
     for one in found.answers:
         one.reason = reason_of(one, within) if one.within else reason or reason_of(one, within)
     return found
+
+
+def is_stopped(problem: RunError) -> bool:
+    """Whether a run was stopped, as one that takes too long."""
+    return problem.outcome is not None and problem.outcome.status == STOPPED
 
 
 def judged(quantities, runs, within) -> Answers:

@@ -14,9 +14,10 @@ import time
 import typing
 
 from slideline_tools import UserError
-from slideline_tools.answer.divide import divided
+from slideline_tools.answer.divide import divided, node_sets
 from slideline_tools.draw.model import check_deck
 from slideline_tools.effective_deck import read_blocks
+from slideline_tools.files import folder as made
 from slideline_tools.finished_run import Run
 from slideline_tools.program import Outcome, not_run, run
 
@@ -62,15 +63,16 @@ class Meshes:
         """The stem of the deck, without its parameter."""
         return self.deck.stem.replace(f"{{{self.parameter}}}", "").rstrip("_-.") if self.parameter else self.deck.stem
 
-    def run(self, factor: int) -> MeshRun:
-        """The run on the mesh divided by `factor`: as it is kept, else anew. RunError where it fails."""
+    def run(self, factor: int, limit: float | None = None) -> MeshRun:
+        """The run on the mesh divided by `factor`: as it is kept, else anew. RunError where it fails, or takes longer than `limit`."""
         deck, parameters = self.deck_of(factor)
         folder = self.folder / f"mesh_{factor}"
         mark = self.mark(deck, parameters)
+        made(folder)
         if (kept := self.record(folder, deck, parameters, mark)) is not None:
             return kept
         with followed(folder / "status.out", self.tell):
-            outcome = run(deck, folder, program=self.program, threads=self.threads, **parameters)
+            outcome = run(deck, folder, program=self.program, threads=self.threads, limit=limit, **parameters)
         cycles = int(outcome.history("glstat")["cycle"][-1])
         elements = count_elements(folder / f"{outcome.job}.effective.k")
         timing = outcome.history("timing")
@@ -88,18 +90,13 @@ class Meshes:
         if factor == 1:
             return self.deck, self.parameters
         path = self.folder / f"mesh_{factor}" / f"{self.deck.stem}.k"
-        text = (self.folder / "mesh_1" / f"{self.deck.stem}.effective.k")
-        whole = divided(text.read_text(encoding="utf-8"), self.sets(text), factor)
-        path.parent.mkdir(parents=True, exist_ok=True)
+        text = self.folder / "mesh_1" / f"{self.deck.stem}.effective.k"
+        if self._sets is None:
+            self._sets = node_sets(check_deck(text, self.program))
+        whole = divided(text.read_text(encoding="utf-8"), self._sets, factor)
+        made(path.parent)
         path.write_text(whole, encoding="utf-8")
         return path, {}
-
-    def sets(self, deck: pathlib.Path) -> dict[int, list[int]]:
-        """The nodes of the node sets, in their order, as the program has them."""
-        if self._sets is None:
-            model = check_deck(deck, self.program)
-            self._sets = {one.id: model.node_ids[one.nodes].tolist() for one in model.node_sets.values()}
-        return self._sets
 
     def mark(self, deck: pathlib.Path, parameters) -> str:
         """A digest of what a run depends on."""
@@ -144,9 +141,9 @@ class AdaptedMeshes(Meshes):
     """Meshes each of which is the one before, finer where its error is large and along contact surfaces; their factor is that
     of the divided mesh with as many elements."""
 
-    def run(self, factor: int) -> MeshRun:
+    def run(self, factor: int, limit: float | None = None) -> MeshRun:
         """Run number `factor` of the deck."""
-        found = super().run(factor)
+        found = super().run(factor, limit)
         if factor == 1:
             self.first = found.elements
         return dataclasses.replace(found, mesh=round((found.elements / self.first) ** 0.5, 3))
@@ -158,27 +155,29 @@ class AdaptedMeshes(Meshes):
         if factor == 1:
             if not self.deck.is_file():
                 raise UserError(f"{self.deck}: no such file")
-            folders = [self.deck.parent / line.strip() for block in read_blocks(
-                self.deck.read_text(encoding="utf-8", errors="replace"), "INCLUDE_PATH") for line in block.lines]
+            folders = [self.deck.parent / line.strip() for file in files_of(self.deck) for block in read_blocks(
+                file.read_text(encoding="utf-8", errors="replace"), "INCLUDE_PATH") for line in block.lines]
             paths = "".join(f"*INCLUDE_PATH\n{folder.resolve()}\n" for folder in folders)
             text = f"*KEYWORD\n{paths}*INCLUDE\n{self.deck.resolve()}\n*DATABASE_ERROR_INDICATOR\n*END\n"
         else:
             before = Run(self.folder / f"mesh_{factor - 1}" / f"{self.deck.stem}.effective.k")
             text = refine_run(before, self.program, SHARE, surfaces=True)[0]
-        path.parent.mkdir(parents=True, exist_ok=True)
+        made(path.parent)
         path.write_text(text, encoding="utf-8")
         return path, self.parameters if factor == 1 else {}
 
 
-def files_of(deck: pathlib.Path, folders: tuple[pathlib.Path, ...] = ()) -> list[pathlib.Path]:
-    """A deck and the files that it includes, found in `folders` (*INCLUDE_PATH) too."""
-    files = [deck]
+def files_of(deck: pathlib.Path, main: pathlib.Path | None = None, folders: list[pathlib.Path] | None = None) -> list[pathlib.Path]:
+    """A deck and the files that it includes, found in `folders` too: those of *INCLUDE_PATH so far, as written or from that of the
+    `main` deck."""
+    files, main = [deck], main or deck
+    folders = [] if folders is None else folders
     for block in read_blocks(deck.read_text(encoding="utf-8", errors="replace"), "INCLUDE"):
         for name in map(str.strip, block.lines):
             if block.keyword.startswith("INCLUDE_PATH"):
-                folders = (*folders, pathlib.Path(name), deck.parent / name)
+                folders += [pathlib.Path(name), main.parent / name]
             elif found := next((file for folder in (pathlib.Path(), *folders, deck.parent) if (file := folder / name).is_file()), None):
-                files += files_of(found, folders)
+                files += files_of(found, main, folders)
     return files
 
 

@@ -71,10 +71,10 @@ class Quantity:
         field = scalar_field(results, self.column)
         if not self.where:
             return results.times, (field.values.min if self.measure == "smallest" else field.values.max)(axis=1)
-        point = [number(self.text, dict(self.where)[axis]) for axis in "xy"]
+        point = np.array([number(self.text, dict(self.where)[axis]) for axis in "xy"])
         start = results.points[0][:, :2] - results.point_field("displacement")[0][:, :2]
-        places = start if field.at_nodes else start[results.cells].mean(axis=1)
-        return results.times, field.values[:, np.argmin(np.linalg.norm(places - point, axis=1))]
+        weights = weights_at(start, results.cells, results.cell_field("part_id")[0], point, field.at_nodes)
+        return results.times, field.values @ weights
 
     def measured(self, times: np.ndarray, values: np.ndarray) -> float:
         """The one number of a series."""
@@ -86,6 +86,36 @@ class Quantity:
             impulse = float(np.trapezoid(values, times))
             return impulse if self.measure == "impulse" else impulse / (times[-1] - times[0]) if len(times) > 1 else float(values[0])
         return float({"largest": np.max, "smallest": np.min, "end": lambda some: some[-1]}[self.measure](values))
+
+
+def place_of(x: np.ndarray, cells: np.ndarray, point: np.ndarray) -> tuple[int, np.ndarray]:
+    """The first element at a point, or the nearest one, and the shape functions of its four nodes there."""
+    signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    corners, local = x[cells], np.zeros((len(cells), 2))
+    for _ in range(13):  # Newton, in all elements at once
+        factors = 1.0 + signs * local[:, None]
+        shapes = np.prod(factors, axis=2) / 4.0
+        off = point - np.einsum("ek,eki->ei", shapes, corners)
+        matrix = np.einsum("ekj,eki->eij", signs * factors[..., ::-1] / 4.0, corners)
+        local = np.clip(local + np.einsum("eij,ej->ei", np.linalg.pinv(matrix), off), -1.0, 1.0)
+    away = np.linalg.norm(off, axis=1)
+    found = int(np.flatnonzero(away <= away.min() + 1e-9 * np.ptp(x))[0])
+    return found, shapes[found]
+
+
+def weights_at(x, cells, parts, point, at_nodes: bool) -> np.ndarray:
+    """Weights of all nodes at a point, shape functions; or of all elements: a plane by least squares through the centres of the
+    element there and of those of its part that share a node with it."""
+    cell, shapes = place_of(x, cells, point)
+    weights = np.zeros(len(x if at_nodes else cells))
+    if at_nodes:
+        np.add.at(weights, cells[cell], shapes)
+        return weights
+    near = np.flatnonzero(np.isin(cells, cells[cell]).any(axis=1) & (parts == parts[cell]))
+    away = (x[cells[near]].mean(axis=1) - point) / np.ptp(x[cells[cell]])
+    centre = away.mean(axis=0)
+    weights[near] = np.array([1.0, *-centre]) @ np.linalg.pinv(np.column_stack([np.ones(len(near)), away - centre]))
+    return weights
 
 
 def number(what: str, text: str) -> float:

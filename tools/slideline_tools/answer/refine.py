@@ -12,7 +12,7 @@ import typing
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.answer.divide import Division, Mesh, check_known, deck_of, whole
+from slideline_tools.answer.divide import Division, Mesh, check_known, deck_of, node_sets, whole
 from slideline_tools.draw.model import Model, check_deck
 from slideline_tools.effective_deck import Block, read_blocks
 from slideline_tools.finished_run import Run
@@ -162,6 +162,5 @@ def refined(text: str, model: Model, elements: typing.Iterable[int], surfaces: b
     along = set().union(*mesh.surfaces) if surfaces else set()
     places = mesh.closed({place_of[eid] for eid in elements} | along)
     mesh.refine(places)
-    sets = {one.id: model.node_ids[one.nodes].tolist() for one in model.node_sets.values()}
     finer = [any(surface & places for surface in mesh.surfaces[2 * k:2 * k + 2]) for k in range(len(model.interfaces))]
-    return deck_of(blocks, Refinement(blocks, mesh, sets, finer)), len(places), sum(map(len, mesh.children))
+    return deck_of(blocks, Refinement(blocks, mesh, node_sets(model), finer)), len(places), sum(map(len, mesh.children))

@@ -17,8 +17,14 @@ def plus_minus(one: Answer) -> str:
         return f"{found.value:.6g}, uncertainty unknown"
     digits = 0 if not found.uncertainty or not found.value else math.floor(math.log10(abs(found.value))) - math.floor(
         math.log10(found.uncertainty)) + 2
-    share = f" ({100.0 * found.relative:.2g} %)" if math.isfinite(found.relative) else ""
+    share = f" ({rounded_up(100.0 * found.relative)} %)" if math.isfinite(found.relative) else ""
     return f"{found.value:.{min(max(digits, 3), 10)}g} +- {found.uncertainty:.2g}{share}"
+
+
+def rounded_up(value: float) -> str:
+    """A positive number with three digits, not less than it is: what just misses a target is seen to."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - 2) if value else 1.0
+    return f"{math.ceil(value / unit - 1e-9) * unit:.3g}"
 
 
 def table(found: Answers) -> str:

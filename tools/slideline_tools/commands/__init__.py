@@ -42,7 +42,7 @@ def add(commands, run, name: str, summary: str, description: str, examples: str,
                                  formatter_class=Formatter, epilog=f"{head}:\n\n{lines}\n\n{notes}")
     for *names, words in arguments:
         parser.add_argument(*names, **words)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, parser=parser)
     return parser
 
 

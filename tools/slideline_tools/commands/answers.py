@@ -45,7 +45,7 @@ impulse, end or at=T, or field:NAME[@x=X,y=Y]:MEASURE. Exit status: 0 within, 1 
 
 def answer(options) -> int:
     """Find the answer, write and print it."""
-    from slideline_tools.program import ENDINGS, RunError
+    from slideline_tools.program import ENDINGS, STOPPED, RunError
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # a batch system stops it as a keyboard does, with its run
     try:
         return found_of(options)
@@ -54,8 +54,8 @@ def answer(options) -> int:
         return NOT_REACHED
     except RunError as problem:
         print(f"slideline-tools: answer: {options.deck}: {problem}", file=sys.stderr)
-        failed = problem.outcome is not None and problem.outcome.status != 1
-        return FAILED if failed and problem.outcome.status in ENDINGS and not problem.outcome.ended_well else REFUSED
+        status = problem.outcome.status if problem.outcome else REFUSED
+        return NOT_REACHED if status == STOPPED else FAILED if status in ENDINGS and status > REFUSED else REFUSED
     except UserError as problem:
         print(f"slideline-tools: answer: {problem}", file=sys.stderr)
         return REFUSED
@@ -91,7 +91,6 @@ def found_of(options) -> int:
     else:
         found = loop(None, options.seconds)
     text = report.json_of(deck, found, tried)
-    folder.mkdir(parents=True, exist_ok=True)
     (folder / "answer.json").write_text(text, encoding="utf-8")
     report.chart(found, folder / "answer.png")
     print(text.rstrip() if options.json else "\n".join(
@@ -102,10 +101,9 @@ def found_of(options) -> int:
 def chosen(loop, tried: list, seconds):
     """The loops of all types, cheapest first: on three meshes, and where none of these does, on further ones for no longer than the
     best took; the one that reached the target at least cost, else that of least uncertainty. Types that the program refuses for
-    this deck are left out."""
+    this deck, or whose first mesh takes too long, are left out."""
     from slideline_tools.answer.loop import FIRST
-    from slideline_tools.program import REFUSED as BY_PROGRAM
-    from slideline_tools.program import RunError
+    from slideline_tools.program import STOPPED, RunError
     types, best, refused = list(CHEAPEST_FIRST), None, None
     for most in (len(FIRST), math.inf):
         tried.clear()
@@ -113,9 +111,9 @@ def chosen(loop, tried: list, seconds):
             try:
                 tried.append(one := loop(ctype, min(best.seconds, seconds or math.inf) if best and most > len(FIRST) else seconds, most))
             except RunError as problem:
-                if problem.outcome is None or problem.outcome.status != BY_PROGRAM:
+                if problem.outcome is None or problem.outcome.status not in (REFUSED, STOPPED):
                     raise
-                print(f"type {ctype} is refused: {problem.outcome.said}", file=sys.stderr)
+                print(f"type {ctype} is left out: {problem}", file=sys.stderr)
                 types.remove(ctype)
                 refused = problem
                 continue

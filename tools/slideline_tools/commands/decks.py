@@ -49,7 +49,7 @@ OWN_OPTIONS = {
                ("--rows", {"type": int, "help": "elements along 32.4 mm (100)"})),
 }
 #: what the parser sets beside the options of a scene
-OTHERS = ("command", "scene", "output", "run")
+OTHERS = ("command", "scene", "output", "run", "parser")
 
 
 def add_all(commands) -> None:
@@ -146,12 +146,13 @@ def from_mesh(options) -> int:
 def refine(options) -> int:
     """Write the deck of a run on a mesh that is finer where it pays."""
     from slideline_tools.answer.refine import refine_run
+    from slideline_tools.files import output
     from slideline_tools.finished_run import Run
     from slideline_tools.program import find_program
     if not 0.0 < options.fraction <= 1.0:
         raise UserError(f"--fraction {options.fraction:g}: expected more than 0 and at most 1")
     text, divided, total = refine_run(Run(options.run_path), find_program(options.program), options.fraction, options.field,
                                       options.surfaces)
-    pathlib.Path(options.output).write_text(text, encoding="utf-8")
+    output(options.output).write_text(text, encoding="utf-8")
     print(f"{options.output}: {divided} elements divided, {total} in all")
     return 0

@@ -2,6 +2,7 @@
 """Whether the uncertainty of `answer` is true: three cheap runs of each scene against a closed form or a run four times finer
 than the finest of them (twice where `finest` is 6)."""
 import dataclasses
+import math
 import pathlib
 import re
 import subprocess
@@ -10,11 +11,10 @@ from typing import Callable, Mapping, Optional
 
 import pandas as pd
 
-from slideline_tools import UserError, scenes
-from slideline_tools.answer.divide import divided
+from slideline_tools import scenes
 from slideline_tools.answer.estimate import estimate
+from slideline_tools.answer.meshes import Meshes
 from slideline_tools.answer.quantity import parse
-from slideline_tools.draw.model import check_deck
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, plt
 from slideline_tools.program import Outcome, find_program
 from slideline_tools.studies.common import markdown_table, save_small, verification, write_page
@@ -46,9 +46,9 @@ def own(path):
     return "\n".join(lines) + "\n"
 
 
-def verified(case, name, *arguments, more=""):
+def verified(case, name, *arguments, module="check", more="", **named):
     """The deck of a verification case."""
-    made = getattr(verification(case), name)(*arguments)
+    made = getattr(verification(case, module), name)(*arguments, **named)
     return (made[0] if isinstance(made, tuple) else made).text().replace("*END", f"{more}*END")
 
 
@@ -66,6 +66,14 @@ def thick_ring(n_r, n_t):
         f"nodout:ux@node={node}:end": case.lame_displacement(r) for node, r in ((1, case.INNER), (n_r + 1, case.OUTER))})
 
 
+def rolling():
+    """A disc is set on the level with 1 m/s and no spin, and slides until it rolls with two thirds of that: momentum and friction of
+    a rigid disc of radius 1 m."""
+    mass = 1000.0 * math.pi
+    return Scene(lambda: verified("friction", "rolling", 7, 0.2, 0.0, 1.0, 0.5, 2.0, module="rolling", cells=3), {
+        "matsum:momentum_x@part=1:end": 2.0 / 3.0 * mass, "glstat:friction:end": mass / 6.0})
+
+
 SCENES = {
     "two bars": Scene(lambda: own("doc/examples/contact_2d_slideline.k"), {
         "rcforc:fx@interface=1,side=master:impulse": 50.0, "matsum:momentum_x@part=2:end": 50.0, "glstat:internal:largest": 6.25,
@@ -78,10 +86,10 @@ SCENES = {
     "thick ring": thick_ring(4, 6),
     "press fit": Scene(lambda: own("input/press_fit/press_fit.k"), dict.fromkeys((
         "field:displacement:largest", "field:contact_pressure@x=0.05,y=0:end", "field:displacement:x@x=0.1,y=0:end"))
-        | {FORCE.format("fx", "end"): None}, 6),
+        | {FORCE.format("fx", "end"): None}),
     "plate with a hole": Scene(lambda: own("input/plate_hole/plate_hole.k"), dict.fromkeys((
-        "glstat:internal:end", "field:displacement:largest", "field:stress:xx@x=0,y=0.02:end")), 6),
-    "ring in flight": Scene(lambda: own("doc/examples/expanding_ring.k"), {"nodout:x@node=5:largest": None, "glstat:kinetic:mean": None}, 6),
+        "glstat:internal:end", "field:displacement:largest", "field:stress:xx@x=0,y=0.02:end"))),
+    "ring in flight": Scene(lambda: own("doc/examples/expanding_ring.k"), {"nodout:x@node=5:largest": None, "glstat:kinetic:mean": None}),
     "plate impact": Scene(lambda: own("doc/examples/plate_impact_spall.k"), dict.fromkeys((
         "nodout:vx@node=121:largest", "nodout:vx@node=121:at=5e-7", "glstat:internal:end"))),
     "block to block": Scene(lambda: own("input/block/block.k"), dict.fromkeys((
@@ -94,9 +102,22 @@ SCENES = {
     "Taylor with heat": Scene(lambda: own("doc/examples/taylor_johnson_cook.k"), dict.fromkeys((
         "nodout:uy@node=306:end", "nodout:x@node=6:end", "field:temperature:largest")), 6),
     "collision": Scene(lambda: own("input/collision/collision.k"), dict.fromkeys((
-        FORCE.format("fy", "impulse"), "glstat:internal:end", "nodout:uy@node=5:smallest", "glstat:kinetic:end")), 6, ("ctype=5",)),
+        FORCE.format("fy", "impulse"), "glstat:internal:end", "nodout:uy@node=5:smallest", "glstat:kinetic:end")), options=("ctype=5",)),
     "cylinder on block": Scene(lambda: scenes.hertz(), dict.fromkeys((
         FORCE.format("fy", "end"), "glstat:internal:end", "field:contact_pressure:largest")), 6, ("ctype=5",)),
+    "sliding die": Scene(lambda: own("input/sliding/sliding.k"), dict.fromkeys((
+        FORCE.format("fy", "at=1.5e-3"), FORCE.format("fy", "impulse"), FORCE.format("fx", "impulse"), "glstat:internal:end")), 6, ("p:dt=8e-8",)),
+    "rolling": rolling(),
+    "stick-slip": Scene(lambda: verified("", "block_on_belt", 5, module="stick_slip"), dict.fromkeys((
+        "nodout:ux:largest", "nodout:ux:smallest", "nodout:ux:mean", "glstat:friction:end"))),
+    "impact of spheres": Scene(lambda: verified("hertz_impact", "collision", 7, edge=0.2e-3, grown=(7, 9)), dict.fromkeys((
+        FORCE.format("fy", "largest"), FORCE.format("fy", "impulse"), "glstat:internal:largest")), 6),
+    "ironing": Scene(lambda: verified("ironing", "ironing", 7, 60.0, 120.0, reach=2.0, level=1), dict.fromkeys((
+        FORCE.format("fy", "at=0.072"), FORCE.format("fy", "impulse"), FORCE.format("fx", "impulse"), "glstat:friction:end")), 6),
+    "penetration": Scene(lambda: verified("penetration", "plate_and_rod", 300.0, 1.0e-3), dict.fromkeys((
+        "matsum:momentum_y@part=2:end", "glstat:internal:end", "glstat:eroded:end")), 6),
+    "folding tube": Scene(lambda: verified("self_contact", "tube", 7, True, module="scenes", rows=24), dict.fromkeys((
+        "glstat:external_work:end", "glstat:internal:end", "glstat:external_work:at=0.1835")), 6),
 }
 
 
@@ -110,17 +131,12 @@ def jobs(options):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, "scene.k")
             path.write_text(scene.deck(), encoding="utf-8")
-            done = subprocess.run([program, f"i={path}", f"d={folder}", "quiet=1", "c=1", *scene.options], capture_output=True,
-                                  text=True, check=False)
-            whole = path.with_name("scene.effective.k")
-            if not whole.exists():
-                raise UserError(f"{name}: {done.stderr}")
-            model = check_deck(whole, program)
-            sets = {one.id: model.node_ids[one.nodes].tolist() for one in model.node_sets.values()}
-            text = whole.read_text(encoding="utf-8")
+            subprocess.run([program, f"i={path}", f"d={folder}/mesh_1", "quiet=1", "c=1", *scene.options], capture_output=True, check=False)
+            meshes = Meshes(path, pathlib.Path(folder), program)
             needs_finest = any(value is None for value in scene.asked.values()) and not options.quick
             for mesh in (*MESHES, *[scene.finest] * needs_finest):
-                listed.append(Job(f"{stem}_{mesh}", text if mesh == 1 else divided(text, sets, mesh), "scene", ("ncpu=1",),
+                deck = meshes.deck_of(mesh)[0] if mesh > 1 else pathlib.Path(folder, "mesh_1", "scene.effective.k")
+                listed.append(Job(f"{stem}_{mesh}", deck.read_text(encoding="utf-8"), "scene", ("ncpu=1",),
                                   {"scene": name, "mesh": mesh}, cost=mesh ** 3.0))
     return sorted(listed, key=lambda job: job.labels["mesh"])
 

@@ -6,7 +6,7 @@ from slideline_tools.histories import TABLES, read_csv
 from slideline_tools.results import read
 
 
-def comparison(folder, other_folder, job, factor=1.0, same_mesh=True):
+def comparison(folder, other_folder, job, factor=1.0):
     """Distances of a run from another one whose forces are multiplied by `factor`.
 
     `force_error`         rms of the difference of the force over the rms of the force
@@ -19,11 +19,10 @@ def comparison(folder, other_folder, job, factor=1.0, same_mesh=True):
     """
     found = force_distance(*(read_csv(place / f"{job}.rcforc.csv")
                              for place in (folder, other_folder)), factor)
-    if same_mesh:
-        one, other = (read(place / f"{job}.vtkhdf") for place in (folder, other_folder))
-        found.update(state_distance(one, other))
-        found["same_states"] = int(same_states(one, other))
-        found["same_bits"] = int(found["same_states"] and same_bits(folder, other_folder, job))
+    one, other = (read(place / f"{job}.vtkhdf") for place in (folder, other_folder))
+    found.update(state_distance(one, other))
+    found["same_states"] = int(same_states(one, other))
+    found["same_bits"] = int(found["same_states"] and same_bits(folder, other_folder, job))
     return found
 
 

@@ -162,14 +162,6 @@ def output_table(runs, level):
         "results, MB": (1e-6 * rows["bytes"]).map("{:.3g}".format)}))
 
 
-def sliding_table(runs):
-    """Force from that on the mesh before, or with the elastic die; the limits of the elements."""
-    rows = runs.loc[["sliding", "sliding_rigid"]] if "sliding_rigid" in runs.index else runs[:0]
-    return markdown_table(pd.DataFrame({
-        "force": rows.get("force_error", rows["seconds"] * float("nan")).map(small_share),
-        "L/c, ns": (1e9 * rows["element_limit"]).map("{:.0f}".format)}).reset_index())
-
-
 def page(table, doc):
     """DOC/studies/simplify.md."""
     runs = medians_of(table)
@@ -183,5 +175,4 @@ def page(table, doc):
         "![Processor time with and without](../pictures/simplify.png)", *(step_table(runs, level) for level in levels),
         "## Half model and search asleep, by type",
         f"The half model from the full one; contact searched in each cycle and asleep. N_r = {levels[-1]}:", type_table(runs, levels[-1]),
-        "## Output", f"Collision, N_r = {levels[-1]}:", output_table(runs, levels[-1]),
-        "## Refinement of the sliding, and the limit of the elements with a rigid die", sliding_table(runs))
+        "## Output", f"Collision, N_r = {levels[-1]}:", output_table(runs, levels[-1]))

@@ -8,12 +8,11 @@ decks.py makes the decks, compare.py compares results.
 import dataclasses
 import functools
 import json
-import re
 from typing import Callable, Sequence
 
 import pandas as pd
 
-from slideline_tools import UserError, scenes
+from slideline_tools import scenes
 from slideline_tools.histories import read_csv
 from slideline_tools.studies.framework.counted import counted_job
 from slideline_tools.studies.framework.job import ALL_TYPES, Job, Study
@@ -119,33 +118,21 @@ def measure(job, folder):
     timing = read_csv(folder / f"{job.jobid}.timing.csv")
     return {**phases(folder / f"{job.jobid}.timing.csv"),
             "input": float(timing["seconds"][timing["phase"] == "input"][0]),
-            "element_limit": element_limit(folder / f"{job.jobid}.log"),
             "processor_seconds": record["processor_seconds"],
             "bytes": sum(path.stat().st_size for path in folder.iterdir()
                          if path.name.endswith((".vtkhdf", ".csv")))}
 
 
-def element_limit(path):
-    """Smallest L/c of the elements at the start, as the log has it, s."""
-    found = re.search(r"smallest L/c of the elements (\S+)", path.read_text(encoding="utf-8"))
-    if not found:
-        raise UserError(f"{path}: no limit of the elements")
-    return float(found[1])
-
-
 def derive(table, folder):
-    """With columns that compare the first run of a variant with that of another, see PAIRS, and
-    the sliding with that on the mesh before."""
+    """With columns that compare the first run of a variant with that of another, see PAIRS."""
     first = finished(table)
     first = first[first["repeat"] == 1].set_index(["variant", "level"])["run"]
     rows = []
     for (name, level), run in first.items():
-        other, factor = PAIRS.get(name, (name, 1.0))
-        key, same_mesh = ((other, level), True) if other != name else ((name, level - 1), False)
-        if key in first and (same_mesh or name == "sliding"):
-            rows.append({"run": run, **comparison(
-                folder / "runs" / run, folder / "runs" / first[key],
-                variants()[name].scene, factor, same_mesh)})
+        other, factor = PAIRS.get(name, (None, 1.0))
+        if (other, level) in first:
+            rows.append({"run": run, **comparison(folder / "runs" / run, folder / "runs" / first[other, level],
+                                                  variants()[name].scene, factor)})
     return table.merge(pd.DataFrame(rows), how="left", on="run") if rows else table
 
 
