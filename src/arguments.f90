@@ -28,7 +28,7 @@ module arguments_m
 
   !> Text of --help.
   character(91), parameter :: help(*) = [character(91) :: &
-    'slideline: 2D explicit contact dynamics', &
+    'slideline: 2D explicit and implicit contact dynamics', &
     '', &
     'usage: slideline i=DECK [d=DIR] [jobid=NAME] [ncpu=N] [timing=...] [OVERRIDES]', &
     '       slideline r=FILE [i=CHANGES] [d=DIR] [ncpu=N] [endtim=T]   restart', &

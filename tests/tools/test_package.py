@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Man pages, completion and syntax files, made of the help of the program and of the reader's tables; the recipes."""
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -56,6 +57,22 @@ def test_other_shells(share, shell, name):
     assert all(word in text for word in ("ctype", "interface", "jobid=", "--version"))
     if found := shutil.which(shell):
         subprocess.run([found, "-n", share / name], check=True)
+
+
+def test_tools(share, tmp_path):
+    """The tools' own completion is loaded when the shell asks for it."""
+    (tmp_path / "slideline-tools").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m slideline_tools.cli "$@"\n')
+    (tmp_path / "slideline-tools").chmod(0o755)
+    said = {"bash": f'. {share}/bash-completion/completions/slideline-tools; COMP_WORDS=(slideline-tools rep); COMP_CWORD=1; '
+                    '_shtab_slideline_tools 2>/dev/null; echo "${COMPREPLY[@]}"',
+            "zsh": f"compdef() {{ echo $1; }}; . {share}/zsh/site-functions/_slideline-tools 2>/dev/null",
+            "fish": f"set fish_complete_path {share}/fish/vendor_completions.d; complete -C 'slideline-tools rep'"}
+    expected = {"bash": "report", "zsh": "_shtab_slideline_tools", "fish": "report"}
+    path = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}", "HOME": str(tmp_path)}
+    for shell, script in said.items():
+        if shutil.which(shell):
+            done = subprocess.run([shell, "-c", script], env=path, capture_output=True, text=True, check=False)
+            assert done.stdout.split()[:1] == [expected[shell]], (shell, done)
 
 
 def test_man_pages(share, slideline):

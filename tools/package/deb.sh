@@ -39,7 +39,7 @@ Depends: ${needs#shlibs:Depends=}
 Recommends: python3-numpy, python3-h5py, python3-matplotlib, python3-pandas, python3-jinja2, python3-shtab
 Section: science
 Priority: optional
-Description: 2D explicit contact dynamics with seven contact formulations
+Description: 2D explicit and implicit contact dynamics in seven formulations
  Reads LS-DYNA keyword decks and runs explicit and, for small problems,
  implicit dynamics of plane and axisymmetric bodies in contact. Seven
  formulations, from node-to-segment to mortar, are chosen by one number.

@@ -3,7 +3,7 @@
 # usage: tools/package/release.sh
 # Gathers a release of the present commit in build/package/release: the source tree with the site of all pages
 # (`build/site`, made by tools/docs.sh after tools/test.sh -L verification), source distribution, wheel, archive and Debian
-# package, and their SHA-256 sums.
+# package, their SHA-256 sums, and NOTES.md, the changelog of this version. Says the command that tags the commit with it.
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
 help_or_go_on "$@"
@@ -11,6 +11,7 @@ help_or_go_on "$@"
 
 release=$packages/release
 tree=$release/slideline-$version-source
+commit=$(git -C "$root" rev-parse HEAD) || exit 1
 if [ -n "$(git -C "$root" status --porcelain)" ]; then
   complain "the tree has changes that no commit has: a release is of a commit"
   exit 1
@@ -23,11 +24,17 @@ for script in package/wheel.sh "build.sh package" package/deb.sh; do
   # shellcheck disable=SC2086  # a script and its words
   "$root"/tools/$script || exit 1
 done
+if [ -n "$(git -C "$root" status --porcelain)" ] || [ "$(git -C "$root" rev-parse HEAD)" != "$commit" ]; then
+  complain "the tree has changed while the packages were built: run this again"
+  exit 1
+fi
 rm -rf "$release"
 mkdir -p "$tree"
-{ git -C "$root" archive HEAD | tar -x -C "$tree" && cp -R "$root/build/site" "$tree/doc/site" &&
+{ git -C "$root" archive "$commit" | tar -x -C "$tree" && cp -R "$root/build/site" "$tree/doc/site" &&
   tar -C "$release" -czf "$tree.tar.gz" "$(basename "$tree")" && rm -rf "$tree" &&
   cp "$packages"/sdist/*.tar.gz "$packages"/*.whl "$packages/slideline_$version"-1_*.deb "$release" &&
   cp "$packages/slideline-$version.tar.gz" "$release/slideline-$version-linux-x86_64.tar.gz" &&
+  awk -v head="## [$version]" '/^## /{on = index($0, head) == 1} on' "$root/doc/changelog.md" >"$release/NOTES.md" &&
   cd "$release" && sha256sum -- * >SHA256SUMS; } || exit 1
-say "the release is in build/package/release"
+say "the release is in build/package/release; its tag:"
+say "git tag -a v$version --cleanup=whitespace -F build/package/release/NOTES.md $commit"

@@ -148,8 +148,8 @@ def zsh(text):
 
 
 def fish(text):
-    """The script for fish: of the program, and of the tools, which shtab does not write."""
-    lines = ["# completion of slideline and slideline-tools for fish", "complete -c slideline -f",
+    """The script for fish."""
+    lines = ["# completion of slideline for fish", "complete -c slideline -f",
              "complete -c slideline -a '(__fish_complete_suffix .k .key)'",
              f"complete -c slideline -a '{' '.join(words(text))}'"]
     for name, values in VALUES.items():
@@ -158,6 +158,24 @@ def fish(text):
         files = " ".join(f"$start*.{ending}" for ending in endings)
         lines.append(f"complete -c slideline -n 'string match -q \"{name}=*\" -- (commandline -ct)' -a '(set start (string "
                      f"replace {name}= \"\" (commandline -ct)); for file in {files} $start*/; echo {name}=$file; end)'")
+    return "\n".join(lines) + "\n"
+
+
+#: what loads the tools' own completion (shtab's, which need not be there when a package is made) when it is first asked for
+TOOLS_BASH = """\
+# completion of slideline-tools for bash
+eval "$(slideline-tools completion bash 2>/dev/null)"
+"""
+TOOLS_ZSH = """\
+#compdef slideline-tools
+eval "$(slideline-tools completion zsh 2>/dev/null)"
+(( $+functions[_shtab_slideline_tools] )) && _shtab_slideline_tools "$@"
+"""
+
+
+def tools_fish():
+    """The script for fish of the tools, which shtab does not write."""
+    lines = ["# completion of slideline-tools for fish"]
     parser = cli.build_parser()
     subparsers = next(a for a in parser._actions if isinstance(a, argparse._SubParsersAction))
     for choice, help_of in zip(subparsers.choices, subparsers._choices_actions):
@@ -233,6 +251,9 @@ def main(program, folder):
     write(folder, "bash-completion/completions/slideline", bash(text))
     write(folder, "zsh/site-functions/_slideline", zsh(text))
     write(folder, "fish/vendor_completions.d/slideline.fish", fish(text))
+    write(folder, "bash-completion/completions/slideline-tools", TOOLS_BASH)
+    write(folder, "zsh/site-functions/_slideline-tools", TOOLS_ZSH)
+    write(folder, "fish/vendor_completions.d/slideline-tools.fish", tools_fish())
     write(folder, "vim/vimfiles/syntax/slideline.vim", vim())
     write(folder, "vim/vimfiles/ftdetect/slideline.vim", "autocmd BufRead,BufNewFile *.k,*.key,*.dyn setfiletype slideline\n")
     write(folder, "slideline/vscode/slideline.tmLanguage.json", grammar())

@@ -4,7 +4,7 @@ from spack.package import *
 
 
 class Slideline(CMakePackage):
-    """2D explicit contact dynamics with seven contact formulations, from LS-DYNA keyword decks."""
+    """2D explicit and implicit contact dynamics with seven contact formulations, from LS-DYNA keyword decks."""
 
     license("MIT")
 
