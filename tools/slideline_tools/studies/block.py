@@ -60,10 +60,10 @@ def interface_stiffness(ctype, n_slave=N_SLAVE, n_master=N_MASTER):
 
 
 @functools.lru_cache(maxsize=None)
-def chain_pressure(stiffness):
-    """The one-dimensional pressure at the end, Pa: that of a chain of masses and springs."""
+def chain_pressure(stiffness, **more):
+    """The one-dimensional pressure at the end, Pa: that of a chain of masses and springs, `stiffness` in N/m^2."""
     chain = verification("block_to_block", "chain")
-    return float(chain.solve(chain.Blocks(penalty=stiffness)).pressure[-1])
+    return float(chain.solve(chain.Blocks(penalty=stiffness, **more)).pressure[-1])
 
 
 def deviation(pressure, exact):

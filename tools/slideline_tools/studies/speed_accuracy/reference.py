@@ -3,11 +3,12 @@
 
 The reference is the run of type 7 on the finest mesh, that of implicit penalty (PUNIT 4) the one
 without compliance: a penalty is judged as an interface with these springs, an implicit one as an
-interface with none. Its own error is extrapolated from its two or three finest levels (Richardson).
+interface with none. Its own error is extrapolated from its two or three finest levels.
 """
 import numpy as np
 import pandas as pd
 
+from slideline_tools.answer.estimate import fit
 from slideline_tools.contact_types import HARD, IMPLICIT_PENALTIES
 from slideline_tools.histories import read_csv
 from slideline_tools.results import read
@@ -21,36 +22,18 @@ from slideline_tools.studies.speed_accuracy.scenes import SCENES
 REFERENCE_TYPE = 7
 IMPACT_SPEED = 80.0
 PLATE, PROJECTILE = 1, 2
-LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.0
-
-
-# ---- Richardson --------------------------------------------------------------------------------
-
-def order_of(levels, coarse, fine):
-    """Order of convergence p from the distances `coarse` = |f_a - f_b| and `fine` = |f_b - f_c|
-    of three levels a < b < c: f_N = f + C N^-p. Kept between 0.5 and 2."""
-    a, b, c = levels
-
-    def ratio(p):
-        return (a ** -p - b ** -p) / (b ** -p - c ** -p)
-
-    low, high = LOWEST_ORDER, HIGHEST_ORDER
-    if not coarse > ratio(low) * fine:
-        return low
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if coarse > ratio(middle) * fine else (low, middle)
-    return low
 
 
 def own_error(levels, distances):
-    """(order, error of the finest level) from distances of successive levels, the finest last.
+    """(order, error of the finest level) from distances of successive levels, the finest last, as of values that go one way.
 
     Two levels: first order is assumed.
     """
-    b, c = levels[-2:]
-    p = 1.0 if len(levels) == 2 else order_of(levels[-3:], *distances[-2:])
-    return p, distances[-1] * c ** -p / (b ** -p - c ** -p)
+    values = np.cumsum([0.0, *distances])[-3:]
+    if len(levels) == 2:
+        return 1.0, distances[-1] * levels[0] / (levels[1] - levels[0])
+    order, (limit, _), _ = fit(1.0 / np.array(levels[-3:]), values)
+    return order, abs(limit - values[-1])
 
 
 # ---- what is compared --------------------------------------------------------------------------

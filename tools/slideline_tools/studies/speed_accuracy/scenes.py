@@ -5,7 +5,6 @@ A scene with a closed form or a separate solution is judged run by run (`judge`)
 judged against a converged reference, see reference.py.
 """
 import dataclasses
-import functools
 from typing import Callable, Sequence
 
 import numpy as np
@@ -144,14 +143,9 @@ def block_deck(level):
     return scenes.block(n_slave=block_quads(level)[0], n_master=block_quads(level)[1])
 
 
-@functools.lru_cache(maxsize=None)
 def chain_pressure(stiffness, ahead=False):
-    """Last pressure of the chain, Pa; `stiffness` in N/m^2, `ahead`: of springs by the end of the
-    step."""
-    chain = verification("block_to_block", "chain")
-    return float(chain.solve(chain.Blocks(
-        penalty=stiffness, step=BLOCK_STEP, steps=round(BLOCK_END / BLOCK_STEP),
-        ahead=ahead)).pressure[-1])
+    """Last pressure of the chain, Pa; `stiffness` in N/m^2, `ahead`: of springs by the end of the step."""
+    return block_study.chain_pressure(stiffness, step=BLOCK_STEP, steps=round(BLOCK_END / BLOCK_STEP), ahead=ahead)
 
 
 def block_springs(level, series):
