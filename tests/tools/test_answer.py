@@ -17,7 +17,7 @@ from slideline_tools.answer.divide import Mesh, divided
 from slideline_tools.answer.estimate import estimate
 from slideline_tools.answer.loop import Answer, Answers, find, following
 from slideline_tools.answer.meshes import MeshRun
-from slideline_tools.answer.quantity import Quantity, parse, weights_at
+from slideline_tools.answer.quantity import Quantity, edges_at, parse, weights_at
 from slideline_tools.answer.report import rounded_up
 from slideline_tools.effective_deck import read_blocks
 from slideline_tools.program import STOPPED, Outcome, RunError
@@ -322,6 +322,9 @@ def test_linear_fields_are_exact_at_any_point():
         assert weights_at(x, cells, parts, point, True) @ of(x) == pytest.approx(of(np.asarray(point)))
         assert weights_at(x, cells, parts, point, False) @ of(centres) == pytest.approx(of(np.asarray(point)))
     assert weights_at(x, cells, parts, x[8], True)[8] == pytest.approx(1.0)
+    for point in (0.3 * x[2] + 0.7 * x[3] - [0.0, 0.1], x[3]):  # what a surface has: along it alone
+        below = weights_at(x, edges_at(x, cells, point), parts, point, True)
+        assert set(np.flatnonzero(below > 1e-9)) <= {2, 3} and below[3] > 0.6 and below.sum() == pytest.approx(1.0)
     near = weights_at(x, cells, np.where(centres[:, 0] < 2.5, 1, 2), [2.3, 1.7], False)
     assert not np.any(near[centres[:, 0] > 2.5])   # not across to another part
 

@@ -13,6 +13,7 @@ from slideline_tools.names import missing
 from slideline_tools.program import Outcome
 
 MEASURES = ("largest", "smallest", "mean", "impulse", "end")
+OF_SURFACES = ("contact_", "gap")  # nodal fields that mean nothing inside
 FORM = "HISTORY:COLUMN[@KEY=VALUE,...][:largest|smallest|mean|impulse|end|at=T]"
 
 
@@ -73,7 +74,8 @@ class Quantity:
             return results.times, (field.values.min if self.measure == "smallest" else field.values.max)(axis=1)
         point = np.array([number(self.text, dict(self.where)[axis]) for axis in "xy"])
         start = results.points[0][:, :2] - results.point_field("displacement")[0][:, :2]
-        weights = weights_at(start, results.cells, results.cell_field("part_id")[0], point, field.at_nodes)
+        cells = edges_at(start, results.cells, point) if self.column.startswith(OF_SURFACES) else results.cells
+        weights = weights_at(start, cells, results.cell_field("part_id")[0], point, field.at_nodes)
         return results.times, field.values @ weights
 
     def measured(self, times: np.ndarray, values: np.ndarray) -> float:
@@ -101,6 +103,15 @@ def place_of(x: np.ndarray, cells: np.ndarray, point: np.ndarray) -> tuple[int, 
     away = np.linalg.norm(off, axis=1)
     found = int(np.flatnonzero(away <= away.min() + 1e-9 * np.ptp(x))[0])
     return found, shapes[found]
+
+
+def edges_at(x: np.ndarray, cells: np.ndarray, point: np.ndarray) -> np.ndarray:
+    """The exterior edges at the node nearest to a point, as elements without height."""
+    pairs = np.sort(np.stack([cells, np.roll(cells, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    edges, counts = np.unique(pairs[pairs[:, 0] != pairs[:, 1]], axis=0, return_counts=True)
+    edges = edges[counts == 1]
+    nearest = edges.flat[np.argmin(np.linalg.norm(x[edges.ravel()] - point, axis=1))]
+    return edges[(edges == nearest).any(axis=1)][:, [0, 1, 1, 0]]
 
 
 def weights_at(x, cells, parts, point, at_nodes: bool) -> np.ndarray:
