@@ -12,20 +12,17 @@ help_or_go_on "$@"
 
 # make_package: programs of three levels that need nothing but the C library, and what `cmake --install` puts beside them.
 make_package() {
-  local name build="$root/build/package/build" log="$root/build/package/build.log"
-  name="slideline-$(sed -n 's/^project(slideline VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")"
-  say "building for x86-64-v2, v3 and v4"
-  mkdir -p "$root/build/package"
-  rm -rf "$root/build/package/$name"
-  if ! { cmake -S "$root" -B "$build" -G Ninja -DSLIDELINE_TESTS=OFF -DSLIDELINE_PORTABLE=ON \
-           "-DSLIDELINE_LEVELS=x86-64-v2;x86-64-v3;x86-64-v4" -DCMAKE_INSTALL_PREFIX="$root/build/package/$name" &&
-         cmake --build "$build" && cmake --install "$build" --strip; } >"$log" 2>&1; then
-    tail -n 60 "$log" >&2
-    complain "the build failed; its output is in build/package/build.log"
-    exit 1
-  fi
-  tar -C "$root/build/package" -czf "$root/build/package/$name.tar.gz" "$name" || exit 1
-  "$root/build/package/$name/bin/slideline" --version || exit 1
+  local build name
+  . "$root/tools/package/common.sh"
+  build=$packages/build
+  name=slideline-$version
+  say "building for ${levels//;/, } (some minutes; how far it is stands in build/package/build.log)"
+  rm -rf "${packages:?}/$name"
+  { cmake -S "$root" -B "$build" -G Ninja -DSLIDELINE_TESTS=OFF -DSLIDELINE_PORTABLE=ON "-DSLIDELINE_LEVELS=$levels" \
+      -DCMAKE_INSTALL_PREFIX="$packages/$name" && cmake --build "$build" && cmake --install "$build" --strip
+  } >"$packages/build.log" 2>&1 || fail build
+  tar -C "$packages" -czf "$packages/$name.tar.gz" "$name" || exit 1
+  "$packages/$name/bin/slideline" --version || exit 1
   say "the package is build/package/$name.tar.gz"
 }
 

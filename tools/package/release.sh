@@ -20,10 +20,7 @@ if [ ! -f "$root/build/site/index.html" ]; then
   complain "there is no build/site: tools/test.sh -L verification, then tools/docs.sh make it"
   exit 1
 fi
-for script in package/wheel.sh "build.sh package" package/deb.sh; do
-  # shellcheck disable=SC2086  # a script and its words
-  "$root"/tools/$script || exit 1
-done
+"$root/tools/package/wheel.sh" && "$root/tools/package/deb.sh" || exit 1
 if [ -n "$(git -C "$root" status --porcelain)" ] || [ "$(git -C "$root" rev-parse HEAD)" != "$commit" ]; then
   complain "the tree has changed while the packages were built: run this again"
   exit 1
