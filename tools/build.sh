@@ -4,7 +4,7 @@
 # Installs what is missing and builds build/release/slideline or build/debug/slideline.
 # counted: build/counted/slideline, for x86-64-v3, whose instructions callgrind can count.
 # mpi: build/mpi/slideline, whose explicit runs `mpirun -n N` shares among N processes.
-# package: builds for x86-64-v2, v3 and v4 and a launcher that picks the fastest, as
+# package: builds for x86-64-v2, v3 and v4 (or those of SLIDELINE_LEVELS) and a launcher that picks the fastest, as
 # build/package/slideline-VERSION and that as .tar.gz, for other machines with Linux.
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"

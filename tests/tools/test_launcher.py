@@ -4,6 +4,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 
 import pytest
 
@@ -64,3 +65,21 @@ def test_old_processor_is_reported(start):
 def test_unknown_processor_is_reported(start, tmp_path):
     done = start(ZEN_2, SLIDELINE_CPUINFO=str(tmp_path / "nowhere"))
     assert done.returncode == 1 and done.stderr == f"slideline: cannot read {tmp_path / 'nowhere'}, which says what this processor can run\n"
+
+
+def test_tools_name_what_is_missing(tmp_path):
+    """No Python, a Python without its packages, and one with them."""
+    bare = tmp_path / "bare"
+    bare.write_text(f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n')
+    bare.chmod(0o755)
+    for python, said in (("/none/such", "there is no /none/such"), (bare, "does not have numpy h5py matplotlib pandas jinja2 (pip")):
+        done = subprocess.run([ROOT / "tools/package/slideline-tools", "info"], env={**os.environ, "PYTHON": str(python)},
+                              capture_output=True, text=True)
+        assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1 and not done.stdout
+    (tmp_path / "bin").mkdir()
+    shutil.copy(ROOT / "tools/package/slideline-tools", tmp_path / "bin")
+    (tmp_path / "share/slideline").mkdir(parents=True)
+    (tmp_path / "share/slideline/python").symlink_to(ROOT / "tools")
+    done = subprocess.run([tmp_path / "bin/slideline-tools", "--version"], env={**os.environ, "PYTHON": sys.executable},
+                          capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout.startswith("slideline-tools ")
