@@ -48,5 +48,5 @@ EOF
 dpkg-deb --root-owner-group --build "$stage" "$packages" >>"$packages/deb.log" 2>&1 || fail deb
 say "the package is build/package/$(basename "$packages"/slideline_"$version"-1_*.deb)"
 if command -v lintian >/dev/null; then
-  lintian --fail-on error "$packages"/slideline_"$version"-1_*.deb
+  lintian --fail-on error "$packages"/slideline_"$version"-1_*.deb || { complain "lintian finds errors in the package"; exit 1; }
 fi

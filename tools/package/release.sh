@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# usage: tools/package/release.sh
+# usage: DEBFULLNAME=NAME DEBEMAIL=ADDRESS tools/package/release.sh
 # Gathers a release of the present commit in build/package/release: the source tree with the site of all pages
 # (`build/site`, made by tools/docs.sh after tools/test.sh -L verification), source distribution, wheel, archive and Debian
 # package, their SHA-256 sums, and NOTES.md, the changelog of this version. Says the command that tags the commit with it.
@@ -14,6 +14,10 @@ tree=$release/slideline-$version-source
 commit=$(git -C "$root" rev-parse HEAD) || exit 1
 if [ -n "$(git -C "$root" status --porcelain)" ]; then
   complain "the tree has changes that no commit has: a release is of a commit"
+  exit 1
+fi
+if [ -z "${DEBFULLNAME:-}" ] || [ -z "${DEBEMAIL:-}" ]; then
+  complain "DEBFULLNAME and DEBEMAIL are to name the maintainer of the Debian package"
   exit 1
 fi
 if [ ! -f "$root/build/site/index.html" ]; then
