@@ -302,11 +302,10 @@ contains
     projection%distance = norm2(d)
     mean_normal = local_normal(local) + local_normal(other)
     side = dot_product(d, mean_normal)
-    if (projection%distance > tiny(1.0_wp)) then
-      projection%gap = sign(projection%distance, side)
+    projection%gap = sign(projection%distance, side)
+    if (projection%distance > on_bisector*sqrt(local%square)) then
       projection%normal = d/projection%gap
     else
-      projection%gap = 0.0_wp
       projection%normal = mean_normal/max(norm2(mean_normal), tiny(1.0_wp))
     end if
   end function vertex_projection
@@ -366,12 +365,13 @@ contains
 
     local = local_coordinates(surface, polyline, point, segment)
     projection = face_projection(local, segment)
-    if (-local%across <= min(local%along, local%square - local%along)) return
+    if (on_bisector*local%square - local%across < min(local%along, local%square - local%along)) &
+      return
     neighbour = merge(surface%previous(segment), surface%next(segment), &
       local%along < 0.5_wp*local%square)
     if (neighbour == 0) return
     other = local_coordinates(surface, polyline, point, neighbour)
-    if (other%across >= 0.0_wp .or. .not. turns_gently(local%t, other%t)) return
+    if (other%across > on_bisector*other%square .or. .not. turns_gently(local%t, other%t)) return
     if (abs(excess_of(local, other)) < bisector_width(local, other)) &
       projection = vertex_projection(local, other, [segment, neighbour])
   end function penetrated_projection
@@ -392,7 +392,8 @@ contains
 
     width = 0.0_wp
     if ((local%t(1)*other%t(1) + local%t(2)*other%t(2))**2 < (1.0_wp - straight)*local%square &
-      *other%square) width = 2.0_wp*on_bisector*abs(local%across)*local%square*other%square
+      *other%square) width = on_bisector*(2.0_wp*abs(local%across) + on_bisector*local%square) &
+      *local%square*other%square
   end function bisector_width
 
   !> Whether two segments meet at a gentle corner: they turn by 60 degrees at most.

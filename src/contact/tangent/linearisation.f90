@@ -9,7 +9,8 @@ module linearisation_m
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
-  use projection_m, only : side_on, face_on, gentle_vertex, sharp_vertex, round_off
+  use projection_m, only : side_on, face_on, gentle_vertex, sharp_vertex, round_off, &
+    on_bisector
   use friction_m, only : node_beyond
   use geometry_m, only : separation
   use kinds_m, only : wp
@@ -136,12 +137,12 @@ contains
   end function way_from
 
   !> Gap, site and normal of a point over the segment in slots 3, 4, like those known: on the line
-  !> of the segment, or at its node at a corner, where the normal points along the connection. A
-  !> corner so close that its normal means nothing stands on the line.
-  pure subroutine project_point(contact, memory, xi, gap, point)
+  !> of the segment, or at its node at a corner, where the normal points along the connection, or
+  !> is held if the node is so close that this means nothing.
+  pure subroutine project_point(contact, memory, xi, gap, normal, point)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    real(wp), intent(in) :: xi, gap !! known; gap in m
+    real(wp), intent(in) :: xi, gap, normal(2) !! known; gap in m
     type(linearised_point_t), intent(inout) :: point
     type(linearised_projection_t) :: projection
     type(dual_t) :: d(2), t(2)
@@ -154,12 +155,17 @@ contains
     is_corner = .not. (abs(xi) > 0.0_wp .and. abs(xi - 1.0_wp) > 0.0_wp)
     if (memory%has%arcs) is_corner = is_corner &
       .and. is_flat(present_shape(memory, point%nodes(3)))
-    if (is_corner) is_corner = abs(projection%xi%value - xi) > round_off
-    if (is_corner .and. abs(gap) > max(memory%closed_gap, tiny(1.0_wp))) then
+    if (is_corner) is_corner = norm2(projection%normal%value - normal) > round_off
+    if (is_corner) then
       projection%xi = constant(xi)
       d = d - xi*t
-      projection%gap = sign(1.0_wp, gap)*sqrt(d(1)*d(1) + d(2)*d(2))
-      projection%normal = [d(1)/projection%gap, d(2)/projection%gap]
+      if (abs(gap) > max(memory%closed_gap, on_bisector*norm2(t%value))) then
+        projection%gap = sign(1.0_wp, gap)*sqrt(d(1)*d(1) + d(2)*d(2))
+        projection%normal = [d(1)/projection%gap, d(2)/projection%gap]
+      else
+        projection%gap = normal(1)*d(1) + normal(2)*d(2)
+        projection%normal = constant(normal)
+      end if
       if (memory%has%friction) then
         point%nodes(7) = node_beyond(contact, memory, point%nodes(3:4), xi, &
           projection%normal%value)

@@ -73,7 +73,8 @@ contains
       point%stiffness = points%stiffness(p)
       point%slave_xi = constant(0.0_wp)
       point%area = constant(1.0_wp)
-      call project_point(contact, memory, points%master_weights(2, p), points%gap(p), point)
+      call project_point(contact, memory, points%master_weights(2, p), points%gap(p), &
+        points%normal(:, p), point)
     end associate
   end function linearise_node
 
@@ -167,7 +168,8 @@ contains
         point%slave_xi = centroid_of(memory%positions, point, 1, 2, &
           constant([end_of_half(at, 2), end_of_half(at, 1)]))
       end if
-      call project_point(contact, memory, status%xi(virtual_node), status%gap(virtual_node), point)
+      call project_point(contact, memory, status%xi(virtual_node), status%gap(virtual_node), &
+        status%normal(:, virtual_node), point)
     end associate
   end function linearise_virtual_node
 

@@ -127,7 +127,8 @@ contains
       point%nodes(3:4) = memory%n_slave + contact%master%segments(:, status%segment(node))
       point%site = node
       point%slave_xi = constant(k - 1.0_wp)
-      call project_point(contact, memory, status%xi(node), status%gap(node), point)
+      call project_point(contact, memory, status%xi(node), status%gap(node), &
+        status%normal(:, node), point)
     end associate
   end subroutine move_to_end
 
@@ -226,7 +227,8 @@ contains
 
     associate (points => memory%points)
       point%nodes(3:4) = points%master_nodes(:, p)
-      call project_point(contact, memory, points%master_weights(2, p), points%gap(p), point)
+      call project_point(contact, memory, points%master_weights(2, p), points%gap(p), &
+        points%normal(:, p), point)
     end associate
     point%area = length*share_of(cosine_between(difference(memory%positions, point, 2, 1), &
       [-point%normal(2), point%normal(1)]))
@@ -270,7 +272,7 @@ contains
         point%nodes(3:4) = memory%points%master_nodes(:, at_end(k))
         point%slave_xi = constant(real(k - 1, wp))
         call project_point(contact, memory, memory%points%master_weights(2, at_end(k)), &
-          memory%points%gap(at_end(k)), point)
+          memory%points%gap(at_end(k)), memory%points%normal(:, at_end(k)), point)
         call append_point(list, point)
       end do
       list%points(p)%area = list%points(p)%area - (shares(1) + shares(2))
