@@ -7,6 +7,7 @@ module projection_m
   use geometry_m, only : local_coordinates_t, coordinates_on_segment, closest_distance, &
     local_normal, separation
   use kinds_m, only : wp
+  use projection_block_m, only : round_off, on_bisector, bisector_width
   use surfaces_m, only : surface_t, meets_axis
   implicit none
   private
@@ -14,7 +15,7 @@ module projection_m
     nearby_projection, stays_over, vector_of, face_projection, is_over_segment, follow_contact, &
     find_closest_segment, turns_gently, opposed_share, side_share, end_tolerance, gentle_turn, &
     side_on, face_on, gentle_vertex, sharp_vertex, slave_side, master_side, round_off, &
-    on_bisector, straight, penetrated_projection
+    on_bisector, penetrated_projection
 
   !> Overshoot accepted beyond the end of a surface, as a part of the segment; not clamped.
   real(wp), parameter :: end_tolerance = 0.01_wp
@@ -37,14 +38,6 @@ module projection_m
   !> the spring of a corner that rolls on a face stays as stiff as it is. Those of a master lie over
   !> different parts of the slave.
   real(wp), parameter :: slave_side(2) = [-0.1_wp, 0.1_wp], master_side(2) = [0.1_wp, 0.59_wp]
-  !> Part of a segment next to its ends where round-off decides on which side of a node a position
-  !> is.
-  real(wp), parameter :: round_off = 1.0e-12_wp
-  !> Difference of the gaps to both segments of a corner, as a part of the segment, up to which a
-  !> position is on the bisector of the corner: equilibrium of symmetric bodies has nodes there.
-  real(wp), parameter :: on_bisector = 1.0e-10_wp
-  !> One minus the square of the cosine of the turn below which there is no corner.
-  real(wp), parameter :: straight = 1.0e-6_wp
 
   !> The projection of a point: weights (1 - xi, xi) on `segment`; point - projection = gap *
   !> normal.
@@ -295,7 +288,7 @@ contains
     projection%is_on = .true.
     projection%xi = merge(0.0_wp, 1.0_wp, local%along < 0.5_wp*local%square)
     d = local%d - projection%xi*local%t
-    if (excess_of(local, other) > bisector_width(local, other)) then
+    if (excess_of(local, other) > width_of(local, other)) then
       projection%segment = segments(2)
       projection%xi = 1.0_wp - projection%xi
     end if
@@ -372,7 +365,7 @@ contains
     if (neighbour == 0) return
     other = local_coordinates(surface, polyline, point, neighbour)
     if (other%across > on_bisector*other%square .or. .not. turns_gently(local%t, other%t)) return
-    if (abs(excess_of(local, other)) < bisector_width(local, other)) &
+    if (abs(excess_of(local, other)) < width_of(local, other)) &
       projection = vertex_projection(local, other, [segment, neighbour])
   end function penetrated_projection
 
@@ -386,15 +379,12 @@ contains
   end function excess_of
 
   !> Largest excess on the bisector of the corner between both; zero on a line.
-  pure function bisector_width(local, other) result(width)
+  pure function width_of(local, other) result(width)
     type(local_coordinates_t), intent(in) :: local, other
     real(wp) :: width
 
-    width = 0.0_wp
-    if ((local%t(1)*other%t(1) + local%t(2)*other%t(2))**2 < (1.0_wp - straight)*local%square &
-      *other%square) width = on_bisector*(2.0_wp*abs(local%across) + on_bisector*local%square) &
-      *local%square*other%square
-  end function bisector_width
+    width = bisector_width(dot_product(local%t, other%t), local%square, other%square, local%across)
+  end function width_of
 
   !> Whether two segments meet at a gentle corner: they turn by 60 degrees at most.
   pure function turns_gently(one, two)
@@ -427,7 +417,7 @@ contains
       other = local_coordinates(surface, polyline, point, candidates(i))
       if (other%along < 0.0_wp .or. other%along > other%square) cycle
       if (.not. turns_gently(local%t, other%t)) cycle
-      if (excess_of(local, other) >= -bisector_width(local, other)) cycle
+      if (excess_of(local, other) >= -width_of(local, other)) cycle
       neighbour = candidates(i)
       return
     end do

@@ -4,12 +4,21 @@
 !> together. Most positions need nothing else, or a look at a neighbour; the few left need a
 !> decision (projection_m).
 module projection_block_m
-  use projection_m, only : round_off, on_bisector, straight
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: projection_block_t, n_block, project_block, resolve_ambiguous
+  public :: projection_block_t, n_block, project_block, resolve_ambiguous, bisector_width, &
+    is_straight, round_off, on_bisector
+
+  !> Part of a segment next to its ends where round-off decides on which side of a node a position
+  !> is.
+  real(wp), parameter :: round_off = 1.0e-12_wp
+  !> Difference of the gaps to both segments of a corner, as a part of the segment, up to which a
+  !> position is on the bisector of the corner: equilibrium of symmetric bodies has nodes there.
+  real(wp), parameter :: on_bisector = 1.0e-10_wp
+  !> One minus the square of the cosine of the turn below which there is no corner.
+  real(wp), parameter :: straight = 1.0e-6_wp
 
   !> Positions of a block.
   integer, parameter :: n_block = 128
@@ -98,12 +107,12 @@ contains
     real(wp), intent(in) :: beside(2, n_block) !! vectors of the neighbours, m
     type(projection_block_t), intent(inout) :: block
     real(wp) :: square, along, across, at, way, to_end, from_x, from_y, other_square, &
-      other_along, other_across, small, width, product, stays, total
+      other_along, other_across, small, width, stays, total
     integer :: k
 
     total = 0.0_wp
     !$omp simd private(square, along, across, at, way, to_end, from_x, from_y, &
-    !$omp   other_square, other_along, other_across, small, width, product, stays) &
+    !$omp   other_square, other_along, other_across, small, width, stays) &
     !$omp   reduction(+: total)
     do k = 1, block%n
       square = block%t(1, k)*block%t(1, k) + block%t(2, k)*block%t(2, k)
@@ -119,11 +128,10 @@ contains
       other_across = from_x*beside(2, k) - from_y*beside(1, k)
       small = round_off*(from_x*from_x + from_y*from_y + other_square)
       stays = merge(1.0_wp, 0.0_wp, other_along >= -small)
-      product = beside(1, k)*block%t(1, k) + beside(2, k)*block%t(2, k)
-      width = merge(2.0_wp*on_bisector*square*other_square, 0.0_wp, product*product &
-        < (1.0_wp - straight)*square*other_square)
+      width = bisector_width(beside(1, k)*block%t(1, k) + beside(2, k)*block%t(2, k), square, &
+        other_square, across)
       stays = merge(1.0_wp, stays, other_across*other_across*square &
-        - across*across*other_square >= -across*width)
+        - across*across*other_square >= width)
       stays = merge(stays, 0.0_wp, across < 0.0_wp)
       block%ambiguous(k) = merge(0.0_wp, block%ambiguous(k), min(to_end + round_off*square, across &
         + (square - to_end), stays - 0.5_wp) >= 0.0_wp)
@@ -131,5 +139,26 @@ contains
     end do
     block%n_ambiguous = nint(total)
   end subroutine keep_near_nodes
+
+  !> Largest difference on the bisector of the corner of two segments between the squares of the
+  !> gaps to them, times the squares of their lengths, m^6; zero on a line.
+  pure function bisector_width(product, square, other_square, across) result(width)
+    real(wp), intent(in) :: product !! of their vectors, m^2
+    real(wp), intent(in) :: square, other_square !! of their lengths, m^2
+    real(wp), intent(in) :: across  !! gap to the first times its length, m^2
+    real(wp) :: width
+
+    width = on_bisector*(2.0_wp*abs(across) + on_bisector*square)*square*other_square
+    if (is_straight(product, square, other_square)) width = 0.0_wp
+  end function bisector_width
+
+  !> Whether two segments, or one and the opposite of the other, are on a line.
+  pure function is_straight(product, square, other_square)
+    real(wp), intent(in) :: product !! of their vectors, m^2
+    real(wp), intent(in) :: square, other_square !! of their lengths, m^2
+    logical :: is_straight
+
+    is_straight = product*product >= (1.0_wp - straight)*square*other_square
+  end function is_straight
 
 end module projection_block_m

@@ -10,6 +10,7 @@ module overlaps_m
   use contacts_m, only : contact_t
   use kinds_m, only : wp
   use projection_m, only : face_on, opposed_share, vector_of, turns_gently, round_off
+  use projection_block_m, only : is_straight
   use slave_segments_m, only : slave_segment_t, start_segment, is_opposed_to_contact, sides_part, &
     near_node
   use surfaces_m, only : surface_t
@@ -150,7 +151,7 @@ contains
           memory%positions(:, memory%n_slave + 1:))
         to = projected_node(nodes(1), own, memory%positions(:, memory%n_slave + 1:))
         overlap%master = masters(k)
-        call clip(contact%master, own, from, to, overlap)
+        call clip(contact%master, memory%positions(:, memory%n_slave + 1:), own, from, to, overlap)
         if (.not. overlap%high > overlap%low) cycle
         if (.not. is_between) then
           overlap%gap = gaps_at_ends(own, from, to)
@@ -187,8 +188,9 @@ contains
   end function projected_node
 
   !> The overlap with one master segment; empty where they are not opposed.
-  pure subroutine clip(master, own, from, to, overlap)
+  pure subroutine clip(master, polyline, own, from, to, overlap)
     type(surface_t), intent(in) :: master
+    real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_master) positions
     type(slave_segment_t), intent(in) :: own
     type(projected_node_t), intent(in) :: from, to !! second and first node of the master segment
     type(overlap_t), intent(inout) :: overlap
@@ -214,15 +216,36 @@ contains
     else if (own%below(1) > 0 .and. abs(from%xi) <= near_node) then
       ! A corner right below an end that is active on another body has a point of its own.
       if (master%next(m) /= own%below(1)) overlap%first = from%number
+    else if (from%xi < 0.0_wp .and. is_past_corner(1, master%next(m))) then
+      overlap%first = from%number
     end if
     if (own%below(2) == m) then
       overlap%high = 1.0_wp
       overlap%last = 0
     else if (own%below(2) > 0 .and. abs(to%xi - 1.0_wp) <= near_node) then
       if (master%previous(m) /= own%below(2)) overlap%last = to%number
+    else if (to%xi > 1.0_wp .and. is_past_corner(2, master%previous(m))) then
+      overlap%last = to%number
     end if
     if (overlap%high <= own%margins(1) .or. overlap%low >= 1.0_wp - own%margins(2)) &
       overlap%high = overlap%low
+
+  contains
+
+    !> Whether the k-th end is past a corner, on the next master segment. The node there, which
+    !> projects a little beyond the end, has its half: else the end would have all, with the normal
+    !> of one face, and the other one as soon as it passes the corner back.
+    pure logical function is_past_corner(k, next) result(is)
+      integer, intent(in) :: k, next
+      real(wp) :: t(2), other(2)
+
+      is = own%is_on_face(k) .and. next == own%below(k)
+      if (.not. is) return
+      t = from%d - to%d
+      other = vector_of(master, polyline, next)
+      is = .not. is_straight(dot_product(t, other), sum(t**2), sum(other**2))
+    end function is_past_corner
+
   end subroutine clip
 
   !> How much of an overlap counts: all up to a certain angle between the two segments, none from a

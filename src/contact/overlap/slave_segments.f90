@@ -28,6 +28,7 @@ module slave_segments_m
     integer :: number
     integer :: ends(2)       !! nodes
     logical :: is_active(2)  !! its ends
+    logical :: is_on_face(2) !! active ends whose projections are no nodes
     real(wp) :: margins(2)   !! parts of it next to its ends where master nodes are no breakpoints
     integer :: below(2)      !! master segments that its ends have their projections on, 0: none
     real(wp) :: start(4)     !! position of its first end
@@ -271,6 +272,8 @@ contains
     own%number = s
     own%ends = contact%slave%segments(:, s)
     own%is_active = memory%slave_status%state(own%ends) == active
+    own%is_on_face = own%is_active .and. abs(0.5_wp - abs(memory%slave_status%xi(own%ends) &
+      - 0.5_wp)) > near_node
     own%margins = merge(least_part, 0.0_wp, own%is_active)
     own%start = memory%positions(:, own%ends(1))
     own%t = separation(memory%positions(:, own%ends(2)), own%start)
