@@ -52,8 +52,8 @@ contains
       square = max(block%t(1, k)*block%t(1, k) + block%t(2, k)*block%t(2, k), tiny(1.0_wp))
       along = block%d(1, k)*block%t(1, k) + block%d(2, k)*block%t(2, k)
       across = block%d(1, k)*block%t(2, k) - block%d(2, k)*block%t(1, k)
-      block%ambiguous(k) = merge(0.0_wp, 1.0_wp, across < 0.0_wp .and. across + along >= 0.0_wp &
-        .and. across + square >= along)
+      block%ambiguous(k) = merge(0.0_wp, 1.0_wp, across < 0.0_wp .and. across + along > 0.0_wp &
+        .and. across + square > along)
       total = total + block%ambiguous(k)
       inverse = 1.0_wp/sqrt(square)
       block%xi(k) = along*(inverse*inverse)
@@ -127,9 +127,9 @@ contains
       other_along = way*(from_x*beside(1, k) + from_y*beside(2, k))
       other_across = from_x*beside(2, k) - from_y*beside(1, k)
       small = round_off*(from_x*from_x + from_y*from_y + other_square)
-      stays = merge(1.0_wp, 0.0_wp, other_along >= -small)
       width = bisector_width(beside(1, k)*block%t(1, k) + beside(2, k)*block%t(2, k), square, &
         other_square, across)
+      stays = merge(1.0_wp, 0.0_wp, other_along >= merge(small, -small, width > 0.0_wp))
       stays = merge(1.0_wp, stays, other_across*other_across*square &
         - across*across*other_square >= width)
       stays = merge(stays, 0.0_wp, across < 0.0_wp)
