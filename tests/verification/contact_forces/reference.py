@@ -21,6 +21,7 @@ AVERTED = 0.25        # cosine of normals from which on a segment is no candidat
 BETWEEN = 0.17        # sine of the angle between a direction and those that it lies between
 SHALLOW = 0.25        # of the segment: how deep a point may be to change sides at a sharp corner
 ON_NODE = 1.0e-9     # of the segment: a projection this close to a node stands on it
+STRAIGHT = 1.0e-3  # sine of the turn below which there is no corner
 TINY = 1.0e-300
 MOST_POINTS = 10     # of a segment
 SHARP = np.cos(np.radians(60.0))  # a projection does not walk across corners that turn more
@@ -444,6 +445,10 @@ def overlaps(slave, master, k, projections, strict=False):
             low, left = 0.0, None
         if m == last:
             high, right = 1.0, None
+        if at[0] < 0.0 and is_past_corner(master, m, 1, first, projections[slave.nodes[k, 0]]):
+            left = nodes[0]
+        if at[1] > 1.0 and is_past_corner(master, m, -1, last, projections[slave.nodes[k, 1]]):
+            right = nodes[1]
         if not low < high:
             continue
         middle = np.interp(0.5 * (low + high), at, gap) if at[0] < at[1] else np.mean(gap)
@@ -453,6 +458,13 @@ def overlaps(slave, master, k, projections, strict=False):
         if part > 0.0:
             found.append((low, high, left, right, m, part))
     return sorted(found, key=lambda overlap: overlap[:2])
+
+
+def is_past_corner(master, m, step, below, projection):
+    """Whether an end of a slave segment is in contact with the face next to segment m, past a corner between them."""
+    if not (projection and projection.gap < 0.0) or ON_NODE >= abs(abs(projection.at - 0.5) - 0.5):
+        return False
+    return below == master.next(m, step) and abs(cross(master.normal[m], master.normal[below])) > STRAIGHT
 
 
 def sides_part(slave, k, master, m):

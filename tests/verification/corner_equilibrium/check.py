@@ -6,6 +6,7 @@ from contact_types import TYPES
 from meshes import Deck
 
 RINGS, FRICTION, SLOPES = (8, 12, 24), (0.0, 0.05), {"valley": 0.2027, "roof": -0.2027}
+OFF = 1.0e-5  # m that the upper body stands beside the ridge; the penetration is ten times that
 MOST_ITERATIONS = 8
 
 
@@ -46,11 +47,11 @@ def fit(kind, n, friction):
     return deck.curve(101, [(0.0, 0.0), (1.0, 1.0)]), hub[0] - 1
 
 
-def wedge(kind, slope, friction):
-    """A body pressed into a valley, or on a roof, of the same slope."""
+def wedge(kind, slope, friction, off=0.0):
+    """A body pressed into a valley, or on a roof, of the same slope, or beside its middle."""
     bodies = []
-    for width, low, high in ((1.0, lambda x: -1.0, lambda x: slope * abs(x)), (0.8, lambda x: slope * abs(x), lambda x: 1.0)):
-        bodies.append(np.array([[(x, z(x)) for x in np.linspace(-width, width, 5)] for z in (low, high)]))
+    for middle, width, low, high in ((0.0, 1.0, lambda x: -1.0, lambda x: slope * abs(x)), (off, 0.8, lambda x: slope * abs(x), lambda x: 1.0)):
+        bodies.append(np.array([[(middle + x, z(x)) for x in np.linspace(-width, width, 5)] for z in (low, high)]))
     deck, (below, above) = start([(body, quads_of(2, 5, False)) for body in bodies], [(0, 1, 1), (-1, 1, 0)])
     contact(deck, above[0], below[-1, ::-1], kind, friction)
     deck.curve(101, [(0.0, 0.0), (1.0, -0.001)])
@@ -71,14 +72,22 @@ def check(run):
                 run.check(f"{label}, rings of {n}: radial force over its mean", radial / radial.mean(), 1.0)
                 run.check(f"{label}, rings of {n}: force around over the radial one", around / radial.mean(), 0.0)
                 judge(run, f"{label}, rings of {n}", result)
-            # Without friction a body may slide off to one side.
-            for scene, slope in SLOPES.items() if friction else ():
+            for scene, slope in SLOPES.items():
                 deck, nodes = wedge(kind, slope, friction)
                 result = run.program(deck)
                 force = result.points("contact_force")[-1][nodes, :2]
                 run.check(f"{label}, {scene}: force less its mirror image, over the largest",
                           (force - force[::-1] * [-1.0, 1.0]) / np.max(np.abs(force)), 0.0)
                 judge(run, f"{label}, {scene}", result)
+        # Nodes alone are driven off a ridge (types 1 to 3).
+        for slope in (SLOPES["roof"], -0.6) if kind > 3 else ():
+            label, across = f"{name}, beside a ridge of slope {-slope}", []
+            for off in (OFF, 10.0 * OFF):
+                deck, nodes = wedge(kind, slope, 0.0, off)
+                result = run.program(deck)
+                across.append(np.sum(result.points("contact_force")[-1][nodes, 0]))
+                judge(run, f"{label}, off by {off}", result)
+            run.check(f"{label}: force across over that nearer to the ridge", across[1] / across[0], 10.0)
 
 
 def judge(run, label, result):
