@@ -26,6 +26,8 @@ FEWEST = {"README.md": 4, "doc/first_steps.md": 12, "doc/tutorial.md": 12, "tool
 FEW_STATES = "build/release/slideline i=input/collision/collision.k d=results/collision p:dtplot=2e-4"
 FEW_OF_FIRST = ("build/release/slideline i=results/first.k d=results/few jobid=first endtim=4e-3 quiet=1 && "
                 "$(echo '{command}' | sed 's,results/first/,results/few/,')")
+#: a run of a deck of the gallery; other pages look at what the collision leaves
+GALLERY = r"build/release/slideline i=input/(?!collision)\S+ d=results/\w+"
 #: beginnings of commands that take too long for a test -> what runs in their place
 SHORTER = {
     "build/venv/bin/slideline-tools animate results/collision/": f"{FEW_STATES} && {{command}}",
@@ -55,6 +57,22 @@ EXTRAS = {"pyvista", "lasso"}
 #: what may lie at the top of the tree after the commands
 TOP = {"CMakeLists.txt", "build", "doc", "input", "results", "tests", "tools"}
 NINJA = "rule nothing\n  command = true\nbuild slideline: nothing\ndefault slideline\n"
+#: slideline-tools with pictures as those of draw_plainly of tests/tools, where others are drawn in full
+PLAIN = """import sys
+from unittest import mock
+
+from slideline_tools import cli
+
+if {"animate", "draw", "plot", "report"} & set(sys.argv[1:2]):
+    import matplotlib
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    from slideline_tools import plots
+    matplotlib.rcParams["text.parse_math"] = False
+    plots.STYLE.update({"figure.dpi": 60, "savefig.dpi": 60, "text.parse_math": False})
+    ConstrainedLayoutEngine.execute = mock.Mock()
+sys.exit(cli.main())
+"""
 CACHE = """CMAKE_PROJECT_NAME:STATIC=slideline
 CMAKE_GENERATOR:INTERNAL=Ninja
 CMAKE_HOME_DIRECTORY:INTERNAL={root}
@@ -105,8 +123,9 @@ def clone(exe, tmp_path_factory):
     (release / "build.ninja").write_text(NINJA)
     (release / "CMakeCache.txt").write_text(
         CACHE.format(root=top, ninja=shutil.which("ninja") or "ninja"))
+    (top / "build/plain.py").write_text(PLAIN)
     environment = f"PYTHONPATH='{top}/tools' MPLBACKEND=Agg exec '{sys.executable}'"
-    for name, what in (("python", ""), ("slideline-tools", "-m slideline_tools.cli")):
+    for name, what in (("python", ""), ("slideline-tools", f"'{top}/build/plain.py'")):
         (venv / name).write_text(f'#!/bin/sh\n{environment} {what} "$@"\n')
         (venv / name).chmod(0o755)
     checksum = subprocess.run(["cksum"], stdin=open(top / "tools/pyproject.toml"),
@@ -134,6 +153,8 @@ def test_commands(name, clone):
             assert info.strip() == "sh", f"a block of '{info}' is not tried"
             printed = ""
             for command in commands_of(text):
+                if name == "doc/gallery.md":  # tests/program runs these decks
+                    command = re.sub(f"^({GALLERY})( ctype=.)?.*", r"\1\2 endtim=1e-5", command)
                 printed += run_command(command, clone)
                 n_run += 1
     run_python(scripts, clone)
@@ -166,7 +187,7 @@ def run_command(command, clone):
             command = instead.format(command=re.sub(r"\s+#.*", "", command), package=PACKAGE, here=pathlib.Path(__file__).parent)
             break
     done = subprocess.run(["bash", "-c", command], cwd=clone, capture_output=True, text=True,
-                          timeout=200, env={**os.environ, "MPLBACKEND": "Agg", "PYTHONDONTWRITEBYTECODE": "1",
+                          timeout=200, env={**os.environ, "MPLBACKEND": "Agg",
                                             "PATH": f"{clone}/build/release:{clone}/build/venv/bin:{os.environ['PATH']}"})
     status = int(wanted.group(1)) if wanted else 0
     assert done.returncode == status, f"{command}\n{done.stdout[-1500:]}{done.stderr[-1500:]}"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The sources speak the field's language: words of pictures are not used in identifiers, nor in comments of these folders."""
+import functools
 import pathlib
 import re
 
@@ -20,25 +21,26 @@ NO_WORDS = re.compile(r"(?<![a-z])(told|namesakes?|heed|nobody|twins?|lend|loan)
 FILES = sorted((ROOT / "src").rglob("*.f90"))
 
 
-def split(line):
-    """Code and comment of a line."""
-    code, _, comment = without_strings(line).partition("!")
-    return code.lower(), comment
+@functools.cache
+def lines():
+    """Place, code and comment of each line of src/."""
+    found = []
+    for path in FILES:
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            code, _, comment = without_strings(line).partition("!")
+            found.append((f"{path.relative_to(ROOT)}:{number}", code.lower(), comment))
+    return found
 
 
 @pytest.mark.parametrize("word", NO_NAMES)
 def test_identifiers_are_terms_of_the_field(word):
     part = re.compile(rf"\b(?:\w+_)?{word}(?:_\w+)?\b")
-    wrong = [f"{path.relative_to(ROOT)}:{number}: {found[0]}" for path in FILES
-             for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
-             for found in [part.search(split(line)[0])] if found]
+    wrong = [f"{place}: {found[0]}" for place, code, _ in lines() if word in code for found in [part.search(code)] if found]
     assert not wrong
 
 
 def test_comments_are_in_terms_of_the_field():
-    wrong = [f"{path.relative_to(ROOT)}:{number}: {found[0]}" for path in FILES
-             for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
-             for found in [NO_COMMENTS.search(split(line)[1])] if found]
+    wrong = [f"{place}: {found[0]}" for place, _, comment in lines() for found in [NO_COMMENTS.search(comment)] if found]
     assert not wrong
 
 

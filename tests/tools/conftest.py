@@ -103,12 +103,18 @@ def results_file(tmp_path):
 
 
 def draw_plainly(patch):
-    """Coarse pictures without a search for their layout, for tests of what a page says; tests of charts draw in full."""
+    """Coarse pictures without a search for their layout and without formulas, whose parser takes half of the time, for tests of
+    what a page says; tests of charts draw in full."""
+    import matplotlib
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     from slideline_tools import plots
-    for name in ("figure.dpi", "savefig.dpi"):
-        patch.setitem(plots.STYLE, name, 60)
+    from slideline_tools.report import charts
+    for style in (plots.STYLE, charts.STYLE):
+        for name in ("figure.dpi", "savefig.dpi"):
+            patch.setitem(style, name, 60)
+        patch.setitem(style, "text.parse_math", False)
+    patch.setitem(matplotlib.rcParams, "text.parse_math", False)  # of what is made while it is drawn
     patch.setattr(ConstrainedLayoutEngine, "execute", lambda self, figure: None)
 
 

@@ -21,6 +21,10 @@ def readers(name):
     return ("info", "plot", "d3plot", "advise") if "Cell" in name or name.endswith("Types") else ("info", "d3plot", "advise")
 
 
+@pytest.fixture(autouse=True)
+def plain(plain_pictures):
+    """What a report says, not how it is drawn."""
+
 
 @pytest.fixture(scope="module")
 def sound(tmp_path_factory):

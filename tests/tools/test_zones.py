@@ -102,7 +102,7 @@ def test_zones_of_a_run_that_slides_and_stops(sliding, tool, tmp_path):
     assert np.all(states[:, 3:9] == 2.0) and np.all(states[:, -1] == 1.0)  # it slides, then it stands
 
 
-def test_frictional_work_is_in_the_report(sliding, tmp_path):
+def test_frictional_work_is_in_the_report(sliding, tmp_path, plain_pictures):
     """As glstat has it, and half m v^2: by sleout, and by glstat where there is none."""
     work = read_csv(sliding / "block.glstat.csv")["friction"][-1]
     assert work == pytest.approx(0.5 * 50.0 * 0.5 ** 2, rel=0.01)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Translate a pFUnit test file (.pf) to a Fortran program, where pFUnit itself is not installed.
 
-usage: pf2f90.py TEST.pf OUT.f90
+usage: pf2f90.py TEST.pf OUT.f90 [TEST.pf OUT.f90 ...]
 
 Knows the part of pFUnit 4 that the tests of this project use and refuses the rest by name, with
 file and line.  The rules of pFUnit's own preprocessor hold here too: the module has the name of the
@@ -198,14 +198,16 @@ class Translator:
 
 
 def main(arguments):
-    if len(arguments) != 2:
+    if not arguments or len(arguments) % 2:
         sys.exit(__doc__)
-    source, target = map(Path, arguments)
-    try:
-        text = Translator(source).translate(source.read_text(encoding="utf-8"))
-    except Refused as trouble:
-        sys.exit(str(trouble))
-    target.write_text(text, encoding="utf-8")
+    for source, target in zip(map(Path, arguments[::2]), map(Path, arguments[1::2])):
+        try:
+            text = Translator(source).translate(source.read_text(encoding="utf-8"))
+        except Refused as trouble:
+            sys.exit(str(trouble))
+        # What is as it was is not compiled again.
+        if not target.exists() or target.read_text(encoding="utf-8") != text:
+            target.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
