@@ -263,7 +263,7 @@ def test_a_first_signal_does_not_kill(exe, deck):
 def test_requests_while_a_deck_is_read_are_heeded(exe, deck):
     """A deck that takes a while: SIGUSR1 before its run begins makes a restart file at the first chance."""
     pipe_deck = drop(end_time=0.02).text()
-    lines = "\n".join(f"{1000 + i},{i * 1.0},99.0" for i in range(400000))
+    lines = "\n".join(f"{1000 + i},{i * 1.0},99.0" for i in range(100000))
     (deck / "long.k").write_text(pipe_deck.replace("*NODE\n", f"*NODE\n{lines}\n", 1))
     process = subprocess.Popen([exe, "i=long.k", "d=long"], cwd=deck, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     for _ in range(2000):  # until the program itself runs

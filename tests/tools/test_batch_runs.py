@@ -166,7 +166,7 @@ def test_signal_reaches_the_program(place, slideline):
     def runs():
         found = folder / "status.out"
         return found.exists() and re.search(r"cycle no\. +[1-9]", found.read_text())
-    assert signalled(place, slideline, runs, "endtim=3.0e-2") == 0
+    assert signalled(place, slideline, runs, "endtim=1.0e-2") == 0
     assert (folder / "one.dump01.h5").exists()
     assert summary(folder.parent)["one"]["meaning"] == "normal"
 
