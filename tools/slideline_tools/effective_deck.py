@@ -34,6 +34,10 @@ class Block:
             return [text[a:b].strip() for a, b in itertools.pairwise(starts) if a < len(text)]
         return [text[k:k + self.width].strip() for k in range(0, len(text), self.width)]
 
+    def cards(self, first: int = 0, *widths: int) -> list[list[str]]:
+        """The fields of all lines from `first` on, as of `fields`; none of blank ones."""
+        return [fields for line in range(first, len(self.lines)) if (fields := self.fields(line, *widths))]
+
     def number(self, line: int) -> int:
         """The whole number in the first field of a line; 0 where there is none."""
         first = (self.fields(line) or [""])[0].removesuffix(".0")

@@ -54,13 +54,12 @@ class Mesh:
         self.points: dict[int, np.ndarray] = {}
         self.elements: list[tuple[int, int, list[int]]] = []
         for block in blocks:
-            for line in range(len(block.lines)):
-                if block.keyword == "NODE":
-                    number, x, y = (block.fields(line, 8, 16, 16, 16) + ["", ""])[:3]
-                    self.points[int(number)] = np.array([real(x), real(y)])
-                elif block.keyword == "ELEMENT_SHELL":
-                    eid, pid, *nodes = map(whole, (block.fields(line, *[8] * 10) + [""] * 4)[:6])
-                    self.elements.append((eid, pid, list(dict.fromkeys(node for node in nodes if node))))
+            for card in block.cards(0, 8, 16, 16, 16) if block.keyword == "NODE" else ():
+                number, x, y = (card + ["", ""])[:3]
+                self.points[int(number)] = np.array([real(x), real(y)])
+            for card in block.cards(0, *[8] * 10) if block.keyword == "ELEMENT_SHELL" else ():
+                eid, pid, *nodes = map(whole, (card + [""] * 4)[:6])
+                self.elements.append((eid, pid, list(dict.fromkeys(node for node in nodes if node))))
         if not self.elements:
             raise UserError("no *ELEMENT_SHELL to divide")
         if odd := next((one for one in self.elements if len(one[2]) not in (3, 4)), None):
@@ -313,12 +312,9 @@ class Division:
         """Edges of a segment set, of *SET_SEGMENT or lines SEG of _GENERAL."""
         head, general = int(block.is_titled) + 1, "GENERAL" in block.keyword
         lines = []
-        for line in range(head, len(block.lines)):
-            fields = block.fields(line)
-            if general and fields[0] != "SEG":
-                lines.append(block.lines[line])
-                continue
-            lines += [("SEG," if general else "") + f"{a},{b}" for a, b in self.pieces(*map(whole, fields[general:general + 2]))]
+        for card in block.cards(head):
+            pieces = self.pieces(*map(whole, card[general:general + 2])) if not general or card[0] == "SEG" else None
+            lines += [",".join(card)] if pieces is None else [("SEG," if general else "") + f"{a},{b}" for a, b in pieces]
         return [block.head, *block.lines[:head], *lines]
 
     def pieces(self, a, b):
@@ -329,13 +325,11 @@ class Division:
 
     def pressures(self, block):
         """*LOAD_SEGMENT on all pieces."""
-        return [block.head, *(",".join([*fields[:3], str(a), str(b)]) for line in range(len(block.lines)) if (fields := block.fields(line))
-                              for a, b in self.pieces(*map(whole, fields[3:5])))]
+        return [block.head, *(",".join([*card[:3], str(a), str(b)]) for card in block.cards() for a, b in self.pieces(*map(whole, card[3:5])))]
 
     def gather_loads(self, block):
         """Nodal loads, which `further` writes."""
-        for line in range(len(block.lines)):
-            number, *fields = block.fields(line) + [""] * 4
+        for number, *fields in (card + [""] * 4 for card in block.cards()):
             on = self.sets[whole(number)] if block.keyword == "LOAD_NODE_SET" else [whole(number)]
             loads = self.loads.setdefault((fields[0], fields[1], *fields[3:7]), {})
             for node in on:
@@ -345,23 +339,21 @@ class Division:
     def prescribed(self, block):
         """*BOUNDARY_..._NODE: a row for each new node whose neighbours have the same."""
         alike: dict[tuple, list[int]] = {}
-        for line in range(len(block.lines)):
-            number, *fields = block.fields(line)
+        for number, *fields in block.cards():
             alike.setdefault(tuple(fields), []).append(whole(number))
         return [block.head, *block.lines, *(",".join([str(node), *fields]) for fields, nodes in alike.items()
                                             for node in self.mesh.new_in(nodes))]
 
     def nodal_velocities(self, block):
         """*INITIAL_VELOCITY_NODE, interpolated."""
-        given = {whole(fields[0]): [real(text) for text in (fields + [""] * 2)[1:3]]
-                 for line in range(len(block.lines)) if (fields := block.fields(line))}
+        given = {whole(card[0]): [real(text) for text in (card + [""] * 2)[1:3]] for card in block.cards()}
         return [block.head, *block.lines, *(f"{node},{vx!r},{vy!r}" for node in self.mesh.new_in(given) for vx, vy in [
             [float(sum(weight * given[old][k] for old, weight in self.mesh.weights[node])) for k in (0, 1)]])]
 
     def shells(self, block):
         """Sets of elements with all children."""
         head = int(block.is_titled) + 1
-        numbers = [whole(text) for line in range(head, len(block.lines)) for text in block.fields(line) if text]
+        numbers = [whole(text) for card in block.cards(head) for text in card if text]
         if "GENERATE" in block.keyword:
             spans = list(zip(numbers[::2], numbers[1::2]))
             numbers = [one[0] for one in self.mesh.elements if any(a <= one[0] <= b for a, b in spans)]
@@ -428,8 +420,8 @@ class Division:
         for block in self.blocks:
             if block.keyword not in ("BOUNDARY_SPC_NODE", "BOUNDARY_SPC_SET"):
                 continue
-            for line in range(len(block.lines)):
-                number, system, *free = map(whole, (block.fields(line) + [""] * 4)[:4])
+            for card in block.cards():
+                number, system, *free = map(whole, (card + [""] * 4)[:4])
                 of_set = block.keyword.endswith("SET")
                 for k in (0, 1):
                     if free[k]:

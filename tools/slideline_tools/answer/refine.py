@@ -57,7 +57,7 @@ class RefinedMesh(Mesh):
         self.hanging: dict[frozenset, int] = {}
         for block in blocks:
             if block.keyword == "CONSTRAINED_ADAPTIVITY":
-                for node, *ends in (map(whole, block.fields(line)[:3]) for line in range(len(block.lines))):
+                for node, *ends in (map(whole, card[:3]) for card in block.cards()):
                     self.hanging[frozenset(ends)] = node
         # An edge with a hanging node and its halves have elements on both sides.
         for edge, node in self.hanging.items():
@@ -125,8 +125,7 @@ class Refinement(Division):
         super().__init__(blocks, mesh, sets, 2)
         self.hanging = set(mesh.hanging.values())
         self.finer = iter(finer)
-        moved = {whole(block.fields(line)[0]) for block in blocks if block.keyword.startswith(WITHOUT_HANGING)
-                 for line in range(len(block.lines)) if block.fields(line)}
+        moved = {whole(card[0]) for block in blocks if block.keyword.startswith(WITHOUT_HANGING) for card in block.cards()}
         for sid in moved & self.whole_sets.keys():
             self.whole_sets[sid] = [node for node in self.whole_sets[sid] if node not in self.hanging]
 

@@ -194,17 +194,27 @@ Tables of `tools/study.sh uncertainty`: [answer](../answer.md) on meshes 1, 2 an
 
 {held} of {count} quantities are within U ({share:.0f} %); the median of U over the true error is {median:.1f}.
 
-{rows}
+{scenes_table}
+
+Missed:
+
+{missed}
 """
 
 
 def page(table, doc):
     """DOC/studies/uncertainty.md."""
     found = judged(table)
-    if len(found):
-        write_page(doc, "uncertainty", PAGE.format(
-            scenes=found["scene"].nunique(), held=found["held"].sum(), count=len(found), share=100.0 * found["held"].mean(),
-            median=found["U/error"].median(), rows=markdown_table(found.assign(held=found["held"].map({True: "yes", False: "no"})))))
+    if not len(found):
+        return
+
+    def span(values):
+        return f"{values.min():.2g} to {values.max():.2g}"
+    by_scene = found.groupby("scene", sort=False).agg({
+        "held": lambda held: f"{held.sum()} of {len(held)}", "U, %": span, "error, %": span, "judged by": lambda by: ", ".join(sorted(set(by)))})
+    write_page(doc, "uncertainty", PAGE.format(
+        scenes=len(by_scene), held=found["held"].sum(), count=len(found), share=100.0 * found["held"].mean(), median=found["U/error"].median(),
+        scenes_table=markdown_table(by_scene.reset_index()), missed=markdown_table(found[~found["held"]].drop(columns=["order", "held"]))))
 
 
 STUDY = Study("uncertainty", jobs, measure, chart, page=page)
