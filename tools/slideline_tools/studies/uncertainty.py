@@ -102,7 +102,7 @@ SCENES = {
     "Taylor with heat": Scene(lambda: own("doc/examples/taylor_johnson_cook.k"), dict.fromkeys((
         "nodout:uy@node=306:end", "nodout:x@node=6:end", "field:temperature:largest")), 6),
     "collision": Scene(lambda: own("input/collision/collision.k"), dict.fromkeys((
-        FORCE.format("fy", "impulse"), "glstat:internal:end", "nodout:uy@node=5:smallest", "glstat:kinetic:end")), options=("ctype=5",)),
+        FORCE.format("fy", "impulse"), "glstat:internal:end", "nodout:uy@node=5:smallest", "glstat:kinetic:end")), 6, ("ctype=5",)),
     "cylinder on block": Scene(lambda: scenes.hertz(), dict.fromkeys((
         FORCE.format("fy", "end"), "glstat:internal:end", "field:contact_pressure:largest")), 6, ("ctype=5",)),
     "sliding die": Scene(lambda: own("input/sliding/sliding.k"), dict.fromkeys((
