@@ -248,8 +248,7 @@ def test_the_order_stays_between_its_bounds(order, taken):
     factors = (1, 2, 3, 4)
     found = estimate(factors, [1.0 + factor ** -order for factor in factors])
     assert found.order == pytest.approx(taken) and found.scatter > 0.0
-    safety = 3.0 if order > 2.0 else 1.25
-    assert found.uncertainty == pytest.approx(safety * abs(1.0 + 4.0 ** -order - found.value) + 2.0 * found.scatter)
+    assert found.uncertainty == pytest.approx(3.0 * abs(1.0 + 4.0 ** -order - found.value) + 2.0 * found.scatter)
 
 
 def test_values_to_and_fro_have_their_range():

@@ -9,7 +9,7 @@ import numpy as np
 
 ORDERS = (0.5, 2.0)        # of the fit
 SAFETY = 1.25              # on what the finest mesh differs from the limit
-UNSURE = 3.0               # the same at the upper bound of the order, and on the difference of two meshes
+UNSURE = 3.0               # the same at a bound of the order, and on the difference of two meshes
 SURE = 0.75                # least order by which meshes are predicted
 AT_BOUND = 1e-6            # distance of an order from a bound that counts as none
 LAST = 3                   # meshes that must go one way
@@ -61,9 +61,14 @@ def estimate(factors, values) -> Estimate:
 
 
 def safety(order: float) -> float:
-    """The factor on what the finest mesh differs from the limit: values that settle faster than the highest order are not yet on
-    their way there."""
-    return SAFETY if order < ORDERS[1] - AT_BOUND else UNSURE
+    """The factor on what the finest mesh differs from the limit: an order at a bound is not that of the values, which settle faster or
+    slower (Eca & Hoekstra's too is 3 outside of their bounds)."""
+    return SAFETY if is_between(order) else UNSURE
+
+
+def is_between(order: float) -> bool:
+    """Whether an order is at none of its bounds."""
+    return ORDERS[0] + AT_BOUND < order < ORDERS[1] - AT_BOUND
 
 
 def fit(h, f):
@@ -82,6 +87,5 @@ def fit(h, f):
         low, high = orders[max(best - 1, 0)], orders[min(best + 1, 30)]
     order = float(orders[best])
     found, rest = of(order)
-    bound = not ORDERS[0] + AT_BOUND < order < ORDERS[1] - AT_BOUND
-    freedom = len(h) - (2 if bound else 3)
+    freedom = len(h) - 2 - is_between(order)
     return order, tuple(map(float, found)), float(np.sqrt(len(h) * rest / freedom)) if freedom > 0 else 0.0
