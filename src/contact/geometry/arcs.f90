@@ -11,7 +11,7 @@ module arcs_m
   implicit none
   private
   public :: prepare_arcs, half_turn, find_curvatures, sagitta, present_shape, form_shapes, &
-    sine_terms, is_flat, steepest
+    sine_terms, is_flat, steepest, followed, hinge
 
   !> Turn at one end of a segment, as a part of that at the other, below which it is flat.
   real(wp), parameter :: flat = 0.1_wp

@@ -4,7 +4,7 @@
 !> doc/theory/contact.md, section 9). What the formulations make of these, areas above all, is
 !> built from the same parts. All in dual numbers, so that each formula stands here once.
 module linearisation_m
-  use arcs_m, only : present_shape, sine_terms, is_flat, steepest
+  use arcs_m, only : present_shape, sine_terms, is_flat, steepest, followed, hinge
   use contact_state_m, only : contact_state_t, arc_shape_t, flat_arc
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
@@ -230,7 +230,7 @@ contains
     point%distance = across/cosine
   end subroutine project_on_arcs
 
-  !> Shape of the arc of a segment; how much of a turn it follows is held.
+  !> Shape of the arc of a segment.
   pure subroutine linearise_shape(memory, point, owner, beside, t, bend, skew)
     type(contact_state_t), intent(in) :: memory
     type(linearised_point_t), intent(inout) :: point !! out: the nodes beside the segment
@@ -239,11 +239,9 @@ contains
     type(dual_t), intent(in) :: t(2) !! the segment, m
     type(dual_t), intent(out) :: bend, skew
     type(dual_t) :: sines(2), other(2), turn
-    type(arc_shape_t) :: shape
     integer :: ends(2), k
 
     ends = point%nodes(owner:owner + 1)
-    shape = present_shape(memory, ends(1))
     sines = constant([0.0_wp, 0.0_wp])
     associate (arcs => memory%arcs, share => memory%arcs%share(:, ends(1)))
       do k = 1, 2
@@ -256,11 +254,9 @@ contains
         else
           turn = half_turn(t, other)
         end if
+        turn = faded(turn, arcs%turn(ends(k)))
         associate (terms => sine_terms(share(k)))
           sines(k) = (2.0_wp*share(k))*turn/sqrt(turn*turn*(terms(2)*turn*turn + terms(1)) + 1.0_wp)
-        end associate
-        associate (value => 0.5_wp*shape%bend + merge(1.0_wp, -1.0_wp, k == 1)*shape%skew)
-          if (abs(sines(k)%value) > 0.0_wp) sines(k) = (value/sines(k)%value)*sines(k)
         end associate
       end do
       if (share(1) < 0.0_wp) sines(1) = sines(2)
@@ -269,6 +265,18 @@ contains
     bend = sines(1) + sines(2)
     skew = 0.5_wp*(sines(1) - sines(2))
   end subroutine linearise_shape
+
+  !> As much of a turn as an arc follows (`arcs_m`): none of one the other way, or at a hinge.
+  pure function faded(turn, initial) result(part)
+    type(dual_t), intent(in) :: turn
+    real(wp), intent(in) :: initial !! turn at time zero
+    type(dual_t) :: part
+
+    part = constant(0.0_wp)
+    if (turn%value/initial < hinge .and. turn%value*initial > 0.0_wp) part = turn
+    if (turn%value/initial > followed) part = (1.0_wp/(hinge - followed))*(part*(hinge &
+      - (1.0_wp/initial)*turn))
+  end function faded
 
   !> Tangent of half the turn from one segment to the next.
   pure function half_turn(a, b) result(turn)
