@@ -44,6 +44,9 @@ Description: 2D explicit and implicit contact dynamics in seven formulations
  implicit dynamics of plane and axisymmetric bodies in contact. Seven
  formulations, from node-to-segment to mortar, are chosen by one number.
 EOF
+# What Python has compiled goes with the package.
+printf '#!/bin/sh\nset -e\nfind /usr/share/slideline/python -name __pycache__ -prune -exec rm -rf {} +\n' >"$stage/DEBIAN/prerm"
+chmod 755 "$stage/DEBIAN/prerm"
 (cd "$stage" && find usr -type f -print0 | sort -z | xargs -0 md5sum >DEBIAN/md5sums) || exit 1
 dpkg-deb --root-owner-group --build "$stage" "$packages" >>"$packages/deb.log" 2>&1 || fail deb
 say "the package is build/package/$(basename "$packages"/slideline_"$version"-1_*.deb)"

@@ -12,7 +12,7 @@ import typing
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.histories import ENTITY_COLUMNS, INTEGER_COLUMNS, TEXT_COLUMNS
+from slideline_tools.histories import ENTITY_COLUMNS, INTEGER_COLUMNS, TEXT_COLUMNS, trapezoid
 
 MEASURES = ("values", "peak", "time of peak", "impulse", "final")
 COVERAGE = ("start", "end")  # first and last time: always judged
@@ -183,7 +183,7 @@ def series_checks(column, entity, result, reference, tolerance, atol):
              ("peak", y[top], y_ref[top_ref], peak_allowed),
              ("time of peak", t_ref[top_ref] if is_met else t[top], t_ref[top_ref], slack)]
     if column not in WITHOUT_IMPULSE:
-        impulse, expected = np.trapezoid(y, t), np.trapezoid(y_ref, t_ref)
+        impulse, expected = trapezoid(y, t), trapezoid(y_ref, t_ref)
         found.append(("impulse", impulse, expected, tolerance.rtol * abs(expected) + atol * span))
     found.append(("final", y[-1], y_ref[-1], atol + tolerance.rtol * abs(y_ref[-1])))
     return [Check(column, measure, entity, float(value), float(expected),

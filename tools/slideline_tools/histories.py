@@ -21,6 +21,8 @@ INTEGER_COLUMNS = ("cycle", "interface", "wall", "group", "section", "node", "el
                    "calls")
 ENTITY_COLUMNS = ("interface", "side", "wall", "group", "section", "node", "element", "part", "condition", "id")
 SIDES = {1: "slave", 2: "master"}
+#: integral over samples; before NumPy 2, as on Debian 12, it has another name
+trapezoid = getattr(np, "trapezoid", None) or getattr(np, "trapz")
 
 
 class HistoryError(UserError):

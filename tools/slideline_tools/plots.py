@@ -40,6 +40,11 @@ ALIKE = (("kinetic", "internal", "hourglass", "viscous", "damping", "contact", "
 
 # ---- a field on the deformed mesh --------------------------------------------------------------
 
+def beside(place):
+    """Where a legend of a figure stands, beside its axes; Matplotlib before 3.7 (Debian 12) knows no such place."""
+    return place if matplotlib.__version__.startswith("3.6.") else f"outside {place}"
+
+
 def deformed(results, state, scale=1.0):
     """(n_node, 2) coordinates of a state with its displacement drawn `scale` times."""
     points = results.points[state][:, :2]

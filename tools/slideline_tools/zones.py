@@ -5,7 +5,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
 from slideline_tools.draw.model import model_of
-from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, plt, run_title
+from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, beside, plt, run_title
 from slideline_tools.results import ResultsError
 
 #: Column `state` of the contact table: words and shade of 0, 1, ...
@@ -58,7 +58,7 @@ def add_legend(figure, contact):
     figure.legend([Patch(facecolor=shade, edgecolor="#555555", linewidth=0.4, label=words)
                    for number, (words, shade) in enumerate(STATES) if number < ALWAYS or number in there],
                   [words for number, (words, _) in enumerate(STATES) if number < ALWAYS or number in there],
-                  loc="outside lower center", ncols=len(STATES), frameon=False, fontsize=8)
+                  loc=beside("lower center"), ncols=len(STATES), frameon=False, fontsize=8)
 
 
 def limit_of(model, interface):

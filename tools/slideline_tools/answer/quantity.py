@@ -8,7 +8,7 @@ import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.fields import scalar_field
-from slideline_tools.histories import TEXT_COLUMNS
+from slideline_tools.histories import TEXT_COLUMNS, trapezoid
 from slideline_tools.names import missing
 from slideline_tools.program import Outcome
 
@@ -85,7 +85,7 @@ class Quantity:
                 raise UserError(f"{self.text}: the run has times from {times[0]:.6g} to {times[-1]:.6g}")
             return float(np.interp(self.time, times, values))
         if self.measure in ("impulse", "mean"):
-            impulse = float(np.trapezoid(values, times))
+            impulse = float(trapezoid(values, times))
             return impulse if self.measure == "impulse" else impulse / (times[-1] - times[0]) if len(times) > 1 else float(values[0])
         return float({"largest": np.max, "smallest": np.min, "end": lambda some: some[-1]}[self.measure](values))
 

@@ -31,7 +31,7 @@ def lines(series: list[tuple[str, np.ndarray, np.ndarray]], ylabel: str, xlabel:
         axes.locator_params(axis="x", nbins=6)
         axes.grid(True, linewidth=0.3, color="#bbbbbb")
         if len(series) > 1:
-            figure.legend(loc="outside upper center", ncols=min(4, len(series)), frameon=False,
+            figure.legend(loc=plots.beside("upper center"), ncols=min(4, len(series)), frameon=False,
                           handlelength=1.6, columnspacing=1.2)
         return figure
 

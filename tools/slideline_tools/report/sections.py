@@ -13,7 +13,7 @@ from slideline_tools import UserError, plots
 from slideline_tools.advise import advise
 from slideline_tools.advise.report import saving_text, select
 from slideline_tools.fields import ROUND_OFF, default_field, scalar_field
-from slideline_tools.histories import History
+from slideline_tools.histories import History, trapezoid
 from slideline_tools.report import charts
 from slideline_tools.report.gather import Gathered
 from slideline_tools.report.page import Block, Section, Table, figures, picture
@@ -207,7 +207,7 @@ def force_rows(slave: History, master: History | None) -> list[list[str]]:
     size = np.hypot(slave["fx"], slave["fy"])
     rows = [at_row("largest force", slave, size, size, 6, "fx {fx:.5g}, fy {fy:.5g}")]
     rows += [[f"impulse on the slave in {axis}",
-              figures(np.trapezoid(slave[f"f{axis}"], slave["time"]), 6), "", ""] for axis in "xy"]
+              figures(trapezoid(slave[f"f{axis}"], slave["time"]), 6), "", ""] for axis in "xy"]
     rows.append(at_row("most contact points at once", slave, "n_active", slave["n_active"], 0))
     if master is not None and len(master) == len(slave) and size.max() > 0.0:
         rest = np.hypot(slave["fx"] + master["fx"], slave["fy"] + master["fy"]).max()
