@@ -41,7 +41,7 @@ def jobs_a_second(build, folder, n, jobs):
     numbers = "\n".join(map(str, range(jobs)))
     start = time.perf_counter()
     subprocess.run(["xargs", f"-P{n}", "-I@", build / "release/slideline", "i=tiny.k", "d=jobs/@"], cwd=folder, input=numbers,
-                   text=True, check=True, stdout=subprocess.DEVNULL)
+                   text=True, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return jobs / (time.perf_counter() - start)
 
 
