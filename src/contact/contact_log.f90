@@ -346,6 +346,11 @@ contains
         //in_units(model%controls%units, 'T'))
       return
     end if
+    if (.not. any(memory%points%pressure(:memory%points%n) > 0.0_wp)) then
+      call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text//', without ' &
+        //'force: the mean gap of the segment there is open')
+      return
+    end if
     call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text//', contact ' &
       //'force there '//to_text(memory%points%pressure(p)*memory%points%area(p)) &
       //per_depth(model%controls%units, 'F', model%is_axisymmetric, is_sheet(model)) &

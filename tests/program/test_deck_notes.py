@@ -118,6 +118,15 @@ def node_lines(text):
     return start, stop
 
 
+def test_round_off_of_a_mesher_is_no_height(slideline, tmp_path):
+    """z of one node is off by 1e-9 of the mesh."""
+    lines = drop(end_time=0.001).text().splitlines()
+    first = lines.index("*NODE") + 2
+    lines[first] = ",".join(lines[first].split(",")[:3]) + ",1.0e-9"
+    done = slideline("d=out", deck="\n".join(lines) + "\n")
+    assert done.returncode == 0, done.stderr
+
+
 def test_more_mistakes_than_are_reported(slideline, tmp_path):
     """1100 sets that are not there: the first in words, all of them in its count and in the sum."""
     text = drop().text().rsplit("*END", 1)[0]

@@ -324,6 +324,21 @@ def test_one_step_does_not_lead_through_a_body(slideline, tmp_path, kind):
     assert forces[0] == pytest.approx(1.0e6 * math.log(1.55 / 1.45), rel=0.05)
 
 
+@pytest.mark.parametrize("kind", ALL_TYPES)
+def test_contact_that_closes_in_the_first_iteration(slideline, tmp_path, kind):
+    """A plate moves 0.3 m and pushes a free block that nothing else acts on: it does not stay where it is."""
+    deck = implicit(1.0, 1.0, dynamic=True).part(1, points=4).elastic(1000.0, 1.0e6, 0.0)
+    deck.part(2, points=4).elastic(1000.0, 1.0e6, 0.0, 2)
+    block = deck.mesh(*grid(4, 2, 1.0, 0.5), part=1)
+    plate = deck.mesh(*grid(3, 1, 1.2, 0.2, (-0.1, -0.3)), part=2)
+    deck.node_set(1, block[:5]).node_set(2, plate[4:][::-1]).contact(1, 2, kind, 1.0e6).curve(1, [(0.0, 0.0), (1.0, 0.3)])
+    for node in plate:
+        deck.prescribe(node, 2, 2, 1)
+    done = slideline("d=x", deck=deck.fix(plate, x=1).output(glstat=1.0, nodout=1.0, nodes=block[:1].tolist()))
+    assert done.returncode == 0, done.stderr
+    assert numbers(tmp_path / "x/job.nodout.csv", "uy")[-1] == pytest.approx(0.2, abs=0.01)
+
+
 @pytest.mark.parametrize("n_steps", [2, 5, 8])
 def test_one_step_does_not_lead_through_a_moving_body(slideline, tmp_path, n_steps):
     """A block that flies at 3 m/s against a held one, up to 1.5 m a step, turns round."""

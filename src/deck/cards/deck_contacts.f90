@@ -10,7 +10,7 @@ module deck_contacts_m
   use model_m, only : model_t
   use boundary_m, only : find_boundary
   use deck_lines_m, only : deck_t, location_t, blocks_of, line_error, line_warning
-  use deck_fields_m, only : card_t
+  use deck_fields_m, only : card_t, field_number
   use deck_cards_m, only : reject_field, warn_of_field
   use deck_choose_type_m, only : choose_type
   use deck_contact_m, only : contact_cards_t, transducer, read_contact
@@ -263,10 +263,13 @@ contains
     type(contact_cards_t), intent(in) :: entry
     character(*), parameter :: no_effect = 'has no effect with the implicit method'
     character(:), allocatable :: reason
+    integer :: k
 
-    if (entry%contact%damping > 0.0_wp) call line_warning(deck, &
-      deck%blocks(entry%block)%keyword, 'implicit contact damping', &
-      'contact damping (VDC) '//no_effect)
+    ! Stock cards have damping by default, which is no choice of the user's.
+    k = merge(2, 3, has_field(entry%cards(2), 'VDC'))
+    if (entry%contact%damping > 0.0_wp .and. .not. entry%cards(k)%blank(field_number( &
+      entry%cards(k)%names, 'VDC'))) call line_warning(deck, deck%blocks(entry%block)%keyword, &
+      'implicit contact damping', 'contact damping (VDC) '//no_effect)
     if (entry%contact%search_interval > 0) call warn_of_field(deck, &
       location_of(entry%cards(merge(1, 2, has_field(entry%cards(1), 'FREQ'))), 'FREQ'), no_effect)
     select case (entry%contact%penalty_unit)

@@ -17,6 +17,8 @@ module deck_mesh_m
 
   !> Fraction of the largest radius below which a node lies on the axis.
   real(wp), parameter :: axis_share = 1.0e-10_wp
+  !> Fraction of the size of the mesh below which z is that of the first node.
+  real(wp), parameter :: flatness = 1.0e-6_wp
 
 contains
 
@@ -54,12 +56,13 @@ contains
     type(card_t) :: card
     real(wp), allocatable :: coordinates(:, :)
     integer :: n, x, y, z, code
-    real(wp) :: plane
+    real(wp) :: plane, farthest
+    type(card_t) :: far_card
     logical :: is_flat
 
     n = count_rows(deck, 'NODE')
     allocate (codes(n), coordinates(2, n))
-    is_flat = .true.
+    farthest = 0.0_wp
     do while (next_of(deck, 'NODE', cursor, card))
       if (deck%maps(a_node)%n == 0) then
         x = field_number(card%names, 'X')
@@ -73,11 +76,9 @@ contains
       coordinates(1, n) = card%r(x)
       coordinates(2, n) = card%r(y)
       if (n == 1) plane = card%r(z)
-      if (is_flat .and. abs(card%r(z) - plane) > 0.0_wp) then
-        is_flat = .false.
-        call report_field(deck, card, z, &
-          'is not the z of the first node: the mesh must lie in one plane z = constant')
-      end if
+      if (abs(card%r(z) - plane) <= farthest) cycle
+      farthest = abs(card%r(z) - plane)
+      far_card = card
     end do
     call map_defined(deck, a_node, 'NID')
     n = deck%maps(a_node)%n
@@ -85,6 +86,12 @@ contains
     call move_alloc(deck%maps(a_node)%ids, mesh%node_id)
     codes = codes(:n)
     mesh%coordinates = coordinates(:, :n)
+    ! Programs that make meshes leave round-off of their own in z.
+    is_flat = .not. farthest > 0.0_wp
+    if (.not. is_flat) is_flat = .not. farthest > flatness*maxval(maxval(mesh%coordinates, 2) &
+      - minval(mesh%coordinates, 2))
+    if (.not. is_flat) call report_field(deck, far_card, z, &
+      'is not the z of the first node: the mesh must lie in one plane z = constant')
     if (n == 0) then
       if (.not. deck%maps(a_node)%has_refused) call line_error(deck, 0, &
         'the deck has no nodes (*NODE)')

@@ -127,7 +127,8 @@ contains
       if (len(outcome%reason) > 0) return
       now%factor = direction%factor
       call measure_residual(model, state, step, trial, matrix, now)
-      if (iteration == 1) first = now
+      ! A body that nothing acts on before its contact closes has no energy in the first iteration.
+      if (iteration == 1 .or. .not. first%energy > 0.0_wp) first = now
       call write_log(log, 'step to '//to_text(step%time)//' iteration '//to_text(iteration) &
         //': energy ratio '//to_text(now%energy/max(first%energy, tiny(1.0_wp)))//', |R| ' &
         //to_text(now%residual)//' (round-off '//to_text(now%floor)//'), |dU| ' &
@@ -301,7 +302,7 @@ contains
     converged = implicit%is_linear .or. now%residual <= floor_margin*now%floor &
       .or. (now%residual <= floor_margin*now%gap_floor .and. now%residual > stagnation*now%before)
     if (converged) return
-    converged = now%energy <= implicit%energy_tolerance*first%energy
+    converged = first%energy > 0.0_wp .and. now%energy <= implicit%energy_tolerance*first%energy
     if (implicit%step_tolerance > 0.0_wp) converged = converged .and. now%step &
       <= implicit%step_tolerance*step
     if (implicit%residual_tolerance > 0.0_wp) converged = converged .and. now%residual &
