@@ -347,8 +347,8 @@ contains
       return
     end if
     if (.not. any(memory%points%pressure(:memory%points%n) > 0.0_wp)) then
-      call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text//', without ' &
-        //'force: the mean gap of the segment there is open')
+      call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text &
+        //', without force: the mean gap of the segment there is open')
       return
     end if
     call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text//', contact ' &
