@@ -223,8 +223,8 @@ contains
   !> bodies had. Between bodies of similar stiffness the rebound is that of softer bodies. Between a
   !> hard and a soft body the springs return energy that the soft body would have kept in part, and
   !> the rebound is too fast: a warning, unless the springs are stiff against the elements, which
-  !> then are too coarse. The advised penalty stores no more than the noticed share: at a given force
-  !> spring energy varies with stiffness^-1, in impacts of a hard on a soft block with
+  !> then are too coarse. The advised penalty stores no more than the noticed share: at a given
+  !> force spring energy varies with stiffness^-1, in impacts of a hard on a soft block with
   !> stiffness^-0.64 or less on coarse meshes.
   subroutine report_soft_springs(model, contact, estimate, log)
     type(model_t), intent(in) :: model

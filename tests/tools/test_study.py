@@ -283,6 +283,19 @@ def test_command_refuses(tiny, capsys, arguments):
     assert capsys.readouterr().err.startswith("study: ")
 
 
+def test_all_goes_on_behind_a_study_that_fails(monkeypatch, capsys):
+    done = []
+
+    def perform(wanted):
+        done.append((wanted.name, wanted.publish))
+        if wanted.name == pages.STUDIES[0]:
+            raise UserError("no runs")
+
+    monkeypatch.setattr(command, "perform", perform)
+    assert command.main(["all", "--publish"]) == command.UNUSABLE
+    assert done == [(name, True) for name in pages.STUDIES] and "study: no runs" in capsys.readouterr().err
+
+
 def test_pictures_of_the_page_are_those_that_the_chart_has_drawn(tiny, bench, monkeypatch, capsys):
     def chart(_, folder):
         (folder / "a.png").write_text("picture")

@@ -28,7 +28,8 @@ def build_parser():
         prog="tools/study.sh", description="Run a study: a sweep of runs, its table, charts and page.",
         epilog="A study that was stopped or killed goes on with the same command. Exit status: "
                "0 done (failed runs are results too), 2 unusable, 4 stopped on request.")
-    parser.add_argument("name", choices=pages.STUDIES, metavar="NAME", help=", ".join(pages.STUDIES))
+    parser.add_argument("name", choices=[*pages.STUDIES, "all"], metavar="NAME",
+                        help=", ".join(pages.STUDIES) + "; all: one after the other")
     parser.add_argument("--levels", type=int, nargs="+", help="refinement levels")
     parser.add_argument("--types", type=parse_series, nargs="+", choices=SERIES,
                         help="contact types; some studies have 7i and 7h, type 7 with PUNIT 4, too")
@@ -183,15 +184,17 @@ def main(arguments=None):
     """Returns the exit status."""
     wanted = build_parser().parse_args(arguments)
     signal.signal(signal.SIGTERM, interrupt)
-    try:
-        perform(wanted)
-    except (UserError, OSError) as problem:
-        print(f"study: {problem}", file=sys.stderr)
-        return UNUSABLE
-    except KeyboardInterrupt:
-        print("study: stopped; the same command goes on with what is left", file=sys.stderr)
-        return STOPPED
-    return DONE
+    status = DONE
+    for name in pages.STUDIES if wanted.name == "all" else (wanted.name,):
+        try:
+            perform(argparse.Namespace(**vars(wanted) | {"name": name}))
+        except (UserError, OSError) as problem:
+            print(f"study: {problem}", file=sys.stderr)
+            status = UNUSABLE
+        except KeyboardInterrupt:
+            print("study: stopped; the same command goes on with what is left", file=sys.stderr)
+            return STOPPED
+    return status
 
 
 if __name__ == "__main__":
