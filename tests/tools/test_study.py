@@ -288,7 +288,7 @@ def test_all_goes_on_behind_a_study_that_fails(monkeypatch, capsys):
 
     def perform(wanted):
         done.append((wanted.name, wanted.publish))
-        if wanted.name == pages.STUDIES[0]:
+        if len(done) == 1:
             raise UserError("no runs")
 
     monkeypatch.setattr(command, "perform", perform)
