@@ -219,13 +219,12 @@ contains
     has = estimate%still < wave_share*estimate%misfit
   end function has_waves
 
-  !> Report an interface whose springs stored much energy: a warning where it was more than the
-  !> bodies had. Between bodies of similar stiffness the rebound is that of softer bodies. Between a
-  !> hard and a soft body the springs return energy that the soft body would have kept in part, and
-  !> the rebound is too fast: a warning, unless the springs are stiff against the elements, which
-  !> then are too coarse. The advised penalty stores no more than the noticed share: at a given
-  !> force spring energy varies with stiffness^-1, in impacts of a hard on a soft block with
-  !> stiffness^-0.64 or less on coarse meshes.
+  !> Report an interface whose springs stored much energy. Between bodies of similar stiffness the
+  !> rebound is that of softer bodies. Between a hard and a soft body the springs return energy that
+  !> the soft body would have kept in part, and the rebound is too fast: a warning, unless the
+  !> springs are stiff against the elements, which then are too coarse. The advised penalty stores
+  !> no more than the noticed share: at a given force spring energy varies with stiffness^-1, in
+  !> impacts of a hard on a soft block with stiffness^-0.64 or less on coarse meshes.
   subroutine report_soft_springs(model, contact, estimate, log)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
@@ -266,7 +265,7 @@ contains
       //to_text(estimate%stored)//', '//percent(estimate%stored, estimate%bodies) &
       //' of the largest internal energy of the bodies on both sides, ' &
       //to_text(estimate%bodies)//trim(merge(': ', '; ', is_wrong))//' '//text
-    if (is_wrong .or. estimate%stored > estimate%bodies) then
+    if (is_wrong) then
       call warn(log, text)
     else
       call write_log(log, text)

@@ -76,6 +76,16 @@ def test_same_bits_after_a_restart_and_with_threads(slideline, tmp_path, kind, i
     assert max(abs(value - 1.0) for value in numbers(one / "job.glstat.csv", "energy_ratio")) < 0.01
 
 
+def test_the_far_side_of_a_sheet_is_no_first_contact(slideline):
+    """A sheet of one element shears to and fro, and its faces pass nodes of each other: nothing is excluded."""
+    deck = Deck("sheet").control(0.05).hourglass(4, 0.1).part(1).elastic(1000.0, 1.0e6, 0.3)
+    nodes = deck.mesh(*grid(12, 1, 2.4, 0.1)).reshape(2, 13)
+    deck.add("*SET_PART_LIST", (1,), (1,)).add("*CONTACT_2D_AUTOMATIC_SINGLE_SURFACE", (1,))
+    deck.add("*INITIAL_VELOCITY_NODE", *[(int(node), 0.0, 0.5 if k > 6 else -0.5) for row in nodes for k, node in enumerate(row)])
+    done = slideline("d=out", deck=deck.output(glstat=0.01))
+    assert done.returncode == 0 and "excluded" not in done.stderr, done.stderr
+
+
 @pytest.mark.parametrize("kind", some_types(2, release=4))
 def test_implicit_restart(slideline, tmp_path, kind):
     done = slideline("d=whole", deck=with_files(folded(kind), dump=4))

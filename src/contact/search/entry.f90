@@ -20,6 +20,9 @@ module entry_m
 
   !> Sine of the angle by which a direction lies between two others (10 degrees).
   real(wp), parameter :: well_between = 0.17_wp
+  !> Times half the thickness of a row of elements, the depth below which a point is in that row and
+  !> not on its far side.
+  real(wp), parameter :: first_row = 1.99_wp
 
   !> What is found of a separated point.
   type :: found_contact_t
@@ -213,6 +216,7 @@ contains
     type(found_contact_t), intent(inout) :: found
     type(local_coordinates_t) :: previous
     real(wp) :: limit
+    integer :: next
 
     associate (pass => status%pass, projection => found%projection)
       found%distance = min(status%reach, projection%distance, abs(projection%gap), found%lateral)
@@ -237,17 +241,34 @@ contains
         found%is_active = -projection%gap <= limit
         ! Beyond the first row of elements it may as well be the far side of a body.
         found%is_released = .not. found%is_active &
-          .and. -projection%gap < 2.0_wp*status%segment_depth(projection%segment)
+          .and. -projection%gap < first_row*status%segment_depth(projection%segment)
         if (.not. pass%has_history) return
         previous = previous_coordinates(pass, own, other, positions, increments, i, &
           projection%segment)
         ! In all trials of an implicit step the same.
         if (found%is_active) found%offset = max(0.0_wp, -local_gap(previous))
-        ! What lay as deep before is known.
-        if (found%is_released) found%is_released = .not. (-local_gap(previous) > limit .and. &
-          is_over(other, positions(:, pass%other_at + 1:), previous, projection%segment))
+        ! What lay as deep before is known, behind this segment or the next one.
+        if (found%is_released) found%is_released = .not. was_deep(projection%segment, previous)
+        if (found%is_released) then
+          next = merge(other%previous(projection%segment), other%next(projection%segment), &
+            previous%along < 0.5_wp*previous%square)
+          if (next > 0) found%is_released = .not. was_deep(next, &
+            previous_coordinates(pass, own, other, positions, increments, i, next))
+        end if
       end if
     end associate
+
+  contains
+
+    !> Whether the point was behind a segment, deeper than a first contact may be.
+    pure logical function was_deep(segment, before)
+      integer, intent(in) :: segment
+      type(local_coordinates_t), intent(in) :: before
+
+      was_deep = -local_gap(before) > limit &
+        .and. is_over(other, positions(:, status%pass%other_at + 1:), before, segment)
+    end function was_deep
+
   end subroutine search_closest
 
   !> Deepest first contact of a point with a segment, m.
