@@ -266,10 +266,12 @@ contains
     integer :: k
 
     ! Stock cards have damping by default, which is no choice of the user's.
-    k = merge(2, 3, has_field(entry%cards(2), 'VDC'))
-    if (entry%contact%damping > 0.0_wp .and. .not. entry%cards(k)%blank(field_number( &
-      entry%cards(k)%names, 'VDC'))) call line_warning(deck, deck%blocks(entry%block)%keyword, &
-      'implicit contact damping', 'contact damping (VDC) '//no_effect)
+    if (entry%contact%damping > 0.0_wp) then
+      k = merge(2, 3, has_field(entry%cards(2), 'VDC'))
+      if (.not. entry%cards(k)%blank(field_number(entry%cards(k)%names, 'VDC'))) &
+        call line_warning(deck, deck%blocks(entry%block)%keyword, 'implicit contact damping', &
+        'contact damping (VDC) '//no_effect)
+    end if
     if (entry%contact%search_interval > 0) call warn_of_field(deck, &
       location_of(entry%cards(merge(1, 2, has_field(entry%cards(1), 'FREQ'))), 'FREQ'), no_effect)
     select case (entry%contact%penalty_unit)
