@@ -98,24 +98,24 @@ SCENES = {
     "plate, elastic": plate("elastic"),
     "plate, plastic": plate("elastoplastic"),
     "Taylor": Scene(lambda: scenes.taylor(columns=5, rows=50), dict.fromkeys((
-        "nodout:uy@node=301:end", "nodout:ux@node=6:end", "glstat:internal:end", "field:plastic_strain:largest")), 6),
+        "nodout:uy@node=301:end", "nodout:ux@node=6:end", "glstat:internal:end", "field:plastic_strain:largest"))),
     "Taylor with heat": Scene(lambda: own("doc/examples/taylor_johnson_cook.k"), dict.fromkeys((
-        "nodout:uy@node=306:end", "nodout:x@node=6:end", "field:temperature:largest")), 6),
+        "nodout:uy@node=306:end", "nodout:x@node=6:end", "field:temperature:largest"))),
     "collision": Scene(lambda: own("input/collision/collision.k"), dict.fromkeys((
-        FORCE.format("fy", "impulse"), "glstat:internal:end", "nodout:uy@node=5:smallest", "glstat:kinetic:end")), 6, ("ctype=5",)),
+        FORCE.format("fy", "impulse"), "glstat:internal:end", "nodout:uy@node=5:smallest", "glstat:kinetic:end")), options=("ctype=5",)),
     "cylinder on block": Scene(lambda: scenes.hertz(), dict.fromkeys((
-        FORCE.format("fy", "end"), "glstat:internal:end", "field:contact_pressure:largest")), 6, ("ctype=5",)),
+        FORCE.format("fy", "end"), "glstat:internal:end", "field:contact_pressure:largest")), options=("ctype=5",)),
     "sliding die": Scene(lambda: own("input/sliding/sliding.k"), dict.fromkeys((
-        FORCE.format("fy", "at=1.5e-3"), FORCE.format("fy", "impulse"), FORCE.format("fx", "impulse"), "glstat:internal:end")), 6, ("p:dt=8e-8",)),
+        FORCE.format("fy", "at=1.5e-3"), FORCE.format("fy", "impulse"), FORCE.format("fx", "impulse"), "glstat:internal:end")), options=("p:dt=8e-8",)),
     "rolling": rolling(),
     "stick-slip": Scene(lambda: verified("", "block_on_belt", 5, module="stick_slip"), dict.fromkeys((
         "nodout:ux:largest", "nodout:ux:smallest", "nodout:ux:mean", "glstat:friction:end"))),
     "impact of spheres": Scene(lambda: verified("hertz_impact", "collision", 7, edge=0.2e-3, grown=(7, 9)), dict.fromkeys((
-        FORCE.format("fy", "largest"), FORCE.format("fy", "impulse"), "glstat:internal:largest")), 6),
+        FORCE.format("fy", "largest"), FORCE.format("fy", "impulse"), "glstat:internal:largest"))),
     "ironing": Scene(lambda: verified("ironing", "ironing", 7, 60.0, 120.0, reach=2.0, level=1), dict.fromkeys((
-        FORCE.format("fy", "at=0.072"), FORCE.format("fy", "impulse"), FORCE.format("fx", "impulse"), "glstat:friction:end")), 6),
+        FORCE.format("fy", "at=0.072"), FORCE.format("fy", "impulse"), FORCE.format("fx", "impulse"), "glstat:friction:end"))),
     "penetration": Scene(lambda: verified("penetration", "plate_and_rod", 300.0, 1.0e-3), dict.fromkeys((
-        "matsum:momentum_y@part=2:end", "glstat:internal:end", "glstat:eroded:end")), 6),
+        "matsum:momentum_y@part=2:end", "glstat:internal:end", "glstat:eroded:end"))),
     "folding tube": Scene(lambda: verified("self_contact", "tube", 7, True, module="scenes", rows=24), dict.fromkeys((
         "glstat:external_work:end", "glstat:internal:end", "glstat:external_work:at=0.1835")), 6),
 }
