@@ -120,7 +120,7 @@ def navigation(folder, keywords):
                    {"Choose": "choose.md"},
                    {"Glossary": "glossary.md"}, {"Building": "building.md"}, {"Meshes": "meshes.md"},
                    {"Coming from LS-DYNA": "coming_from_ls_dyna.md"},
-                   {"What was let go": "let_go.md"},
+                   {"What was removed": "let_go.md"},
                    {"Results": "results.md"}, {"Messages": "messages.md"}, {"Python tools": "tools.md"}, {"Reliability": "reliability.md"},
                    {"Changelog": "changelog.md"}]},
         {"Keywords": ["keywords/index.md", {"All on one page": "keywords.md"},
