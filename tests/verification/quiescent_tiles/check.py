@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Tiles that rest: a wave in a long bar, and a bar that flies into another one."""
+"""Quiescent tiles: a wave in a long bar, and a bar that flies into another one."""
 import re
 
 import numpy as np
