@@ -5,7 +5,6 @@ A finished run has a `job.json` in its folder, written last and whole. A run wit
 the fingerprint of another deck, option or program, is run anew.
 """
 import collections
-import ctypes
 import json
 import os
 import pathlib
@@ -23,8 +22,8 @@ PATIENCE = 5.0  # seconds that a process has to end when it is asked to
 STOPPED = 4  # exit status of the program when it is asked to stop
 # Ended by somebody else: no result, to be run anew.
 FROM_OUTSIDE = (STOPPED, -signal.SIGTERM, -signal.SIGKILL, -signal.SIGINT, -signal.SIGHUP)
-PARENT_DIES = 1  # PR_SET_PDEATHSIG
-LIBC = ctypes.CDLL(None) if sys.platform == "linux" else None
+# The run is killed when this program is, even by SIGKILL (Linux). Not a `preexec_fn`: an interrupt while Python forks is lost.
+GUARD = ["setpriv", "--pdeathsig", "KILL"] if shutil.which("setpriv") else []
 
 
 class Sweep:
@@ -100,9 +99,8 @@ class Run:
             self.begun = time.perf_counter()
             # A session of its own: an interrupt from the keyboard reaches this program alone.
             self.process = subprocess.Popen(
-                self.record["command"], stdin=subprocess.DEVNULL, stdout=out, stderr=err, cwd=self.folder,
-                env={**os.environ, **job.environment}, start_new_session=True,
-                preexec_fn=die_with_parent if LIBC else None)
+                [*GUARD, *self.record["command"]], stdin=subprocess.DEVNULL, stdout=out, stderr=err, cwd=self.folder,
+                env={**os.environ, **job.environment}, start_new_session=True)
 
     def ended(self, count, progress):
         """Whether the process has ended (then it is recorded); waits a little for it."""
@@ -138,11 +136,6 @@ def reason(status, path):
     lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
     reported = [line.strip() for line in lines if line.strip() and not line.startswith("warning")]
     return reported[0][:200] if reported else f"exit status {status}"
-
-
-def die_with_parent():
-    """Between fork and exec: the run is killed when this program is, even by SIGKILL."""
-    LIBC.prctl(PARENT_DIES, signal.SIGKILL)
 
 
 def stop_all(running):
