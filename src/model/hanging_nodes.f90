@@ -2,7 +2,7 @@
 !> Hanging nodes (*CONSTRAINED_ADAPTIVITY): u is the mean of the two parents, forces and lumped
 !> masses go half to each. The half masses are the row sums of the condensed mass matrix, and
 !> v_p^2/2 + v_q^2/2 >= ((v_p + v_q)/2)^2: no frequency rises, so that the bound of the elements on
-!> the step holds (doc/theory/time_integration.md, section 3).
+!> the step holds (doc/theory/time_integration.md, hanging nodes).
 module hanging_nodes_m
   use kinds_m, only : wp
   use layout_m, only : layout_t
