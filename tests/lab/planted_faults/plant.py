@@ -49,7 +49,6 @@ class Fault:
     replace: str
     kind: str                   #: sign, factor, index, off by one, missing reset, ...
     capability: str
-    late: bool                  #: the capability came in the last stages
     tests: tuple[str, ...]      #: nearest first
 
     def text(self) -> str:
@@ -209,7 +208,7 @@ def main() -> None:
     options = parser.parse_args()
     faults, broader = read_faults(options.ids)
     if options.random:
-        faults = [Fault(**drawn, capability="", late=False, tests=())
+        faults = [Fault(**drawn, capability="", tests=())
                   for drawn in random_faults.draw(ROOT / "src", options.folder, options.random, options.seed)]
     build = options.build.resolve()
     if options.sound:
