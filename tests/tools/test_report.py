@@ -365,10 +365,10 @@ def test_walls_without_forces_and_in_pictures(tmp_path, slideline):
     """A wall with a number of its own, in the picture of a state; no rwforc."""
     from matplotlib import pyplot
     from slideline_tools import plots
-    from slideline_tools.results import open_run
+    from slideline_tools.results import read
     run = walled(tmp_path, slideline, "*RIGIDWALL_PLANAR_ID\n        77\n,\n0.0,-0.001,,0.0,1.0\n")
     (run / "bar.rwforc.csv").unlink()
-    results = open_run(run)
+    results = read(run)
     figure = plots.field_figure(results, "mises", ["-1"])
     axes = figure.axes[0]
     assert {word.get_text() for word in axes.texts} == {"wall 1", "wall 77"}

@@ -5,8 +5,6 @@
 
 writes doc/pictures/gallery_NAME.png and doc/pictures/impact.png.
 """
-from __future__ import annotations
-
 import argparse
 import dataclasses
 import pathlib

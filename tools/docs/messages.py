@@ -5,8 +5,6 @@
 
 tools/docs/site_source.py puts the tables below doc/messages.md.
 """
-from __future__ import annotations
-
 import dataclasses
 import pathlib
 import re

@@ -20,13 +20,13 @@ if typing.TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from slideline_tools.program import Outcome, Sweep, run, sweep
-    from slideline_tools.results import Results
+    from slideline_tools.results import Results, read
 
 __version__ = "0.4.0"
 __all__ = ["Outcome", "Sweep", "UserError", "plot", "read", "run", "sweep"]
 
 #: public names whose modules are read when they are asked for: numpy and h5py are slow to import
-LATE = {"Outcome": "program", "Sweep": "program", "run": "program", "sweep": "program", "Results": "results"}
+LATE = {"Outcome": "program", "Sweep": "program", "run": "program", "sweep": "program", "Results": "results", "read": "results"}
 
 
 class UserError(Exception):
@@ -44,26 +44,6 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *LATE})
 
 
-def read(path: str | os.PathLike) -> Results:
-    """The results of a run: `path` is its folder, `<job>.vtkhdf` or another file of the run.
-
-    All values are in the units of the deck (SI in the decks of this project); forces, energies,
-    masses and momenta are per unit of depth. Arrays are numpy arrays with the state as first index:
-
-    `results.times`              (n_state,) unit of time
-    `results.points`             (n_state, n_node, 3) current coordinates, unit of length
-    `results.cells`              (n_cell, 4) indices of nodes from 0; triangles repeat the last
-    `results.point_field(name)`  (n_state, n_node[, 3]) see Results.point_field
-    `results.cell_field(name)`   (n_state, n_cell[, 6]) see Results.cell_field
-    `results.history(name)`      columns by name; of a killed run from its CSV files
-    `results.frame(name)`        the same as a pandas DataFrame
-
-    Nothing is read before it is asked for. Raises UserError where there are no results.
-    """
-    from slideline_tools.results import open_run
-    return open_run(path)
-
-
 def plot(results: Results | Outcome | str | os.PathLike, field: str | None = None, *states: str | float,
          scale: float = 1.0, zoom: typing.Sequence[float] | None = None,
          history: str | typing.Sequence[str] = (), contact: bool = False, zones: bool = False,
@@ -78,7 +58,7 @@ def plot(results: Results | Outcome | str | os.PathLike, field: str | None = Non
     from slideline_tools import files, plots
     from slideline_tools.mirrored import Mirrored
     from slideline_tools.program import Outcome
-    from slideline_tools.results import Results
+    from slideline_tools.results import Results, read
     if sum(map(bool, (history, contact, zones))) > 1:
         raise UserError("choose one of history, contact and zones")
     if isinstance(results, Outcome):

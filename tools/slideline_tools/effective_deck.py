@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """The effective deck of a run: its keywords with their cards, and titles and laws by number."""
-from __future__ import annotations
-
 import dataclasses
 import itertools
 

@@ -2,8 +2,6 @@
 """Files that the tools read and write, and which of them are a run. The rules are those of the
 program: a pipe or a device is not read, nothing is written through a link, and what a tool writes
 is a file of its own."""
-from __future__ import annotations
-
 import glob
 import os
 import pathlib

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """The files of a run, found from what a user names: its folder, its results file or one of its tables."""
-from __future__ import annotations
-
 import functools
 import os
 import pathlib

@@ -5,8 +5,6 @@ Physical groups become what a deck knows: groups of faces parts, groups of lines
 of contact, edges under pressure) and node sets, groups of points node sets. Faces of no group are one
 part. Materials, contact and times are for the user to fill in: the skeleton says where.
 """
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import io

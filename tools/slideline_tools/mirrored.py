@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Both halves of a model whose left edge is the axis or the plane of symmetry x = 0, for pictures."""
-from __future__ import annotations
-
 import numpy as np
 
 #: Components that turn round in the mirror: x of vectors, xy and xz of stresses.

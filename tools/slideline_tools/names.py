@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """What to say of a name that does not exist, objects in one line, and numbers of things."""
-from __future__ import annotations
-
 import difflib
 import typing
 

@@ -2,14 +2,7 @@
 """Reader of the results file `<job>.vtkhdf`.
 
 The names and shapes of the file are known here and nowhere else in the tools. States come as
-arrays with the state as first index, points and cells in the order of the deck:
-
-    results = read("collision.vtkhdf")
-    results.times                           # (n_state,), unit of time of the deck
-    results.points[-1]                      # (n_node, 3), current coordinates of the last state
-    results.cell_field("plastic_strain")    # (n_state, n_cell)
-    results.history("glstat")["kinetic"]    # one column of a history table
-    results.frame("glstat")                 # the whole table for pandas
+arrays with the state as first index, points and cells in the order of the deck.
 """
 from __future__ import annotations
 
@@ -47,12 +40,21 @@ class ResultsError(UserError):
 
 
 def read(path: str | os.PathLike) -> Results:
-    """Open a results file; raises ResultsError if it is none."""
-    return Results(path)
+    """The results of a run: `path` is its folder, `<job>.vtkhdf` or another file of the run.
 
+    All values are in the units of the deck (SI in the decks of this project); forces, energies,
+    masses and momenta are per unit of depth. Arrays are numpy arrays with the state as first index:
 
-def open_run(path: str | os.PathLike) -> Results:
-    """The results of a run by its folder, its results file or another of its files."""
+    `results.times`              (n_state,) unit of time
+    `results.points`             (n_state, n_node, 3) current coordinates, unit of length
+    `results.cells`              (n_cell, 4) indices of nodes from 0; triangles repeat the last
+    `results.point_field(name)`  (n_state, n_node[, 3]) see Results.point_field
+    `results.cell_field(name)`   (n_state, n_cell[, 6]) see Results.cell_field
+    `results.history(name)`      columns by name; of a killed run from its CSV files
+    `results.frame(name)`        the same as a pandas DataFrame
+
+    Nothing is read before it is asked for. Raises UserError where there are no results.
+    """
     path = pathlib.Path(path)
     if path.is_dir() or path.name.endswith(ENDINGS):
         path = pathlib.Path(f"{find_run(path, '.vtkhdf')}.vtkhdf")

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """States of an axisymmetric run turned about the axis x = 0 into solids, as a VTKHDF file of hexahedra and wedges."""
-from __future__ import annotations
-
 import os
 
 import h5py

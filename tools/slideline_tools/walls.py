@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Rigid walls of a run in pictures of its states."""
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -7,8 +7,6 @@
 Every check says nothing unless the files of the run prove its point; its thresholds stand at the
 top of its module (bodies, touching, rubbing, stepping, outputs; doc/studies/simplify.md lists them).
 """
-from __future__ import annotations
-
 from slideline_tools.advise import bodies, outputs, rubbing, stepping, touching
 from slideline_tools.advise.finished import Finished
 from slideline_tools.advise.report import Advice

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Advice on parts: laws, viscosity, rigid bodies, symmetry."""
-from __future__ import annotations
-
 import numpy as np
 
 from slideline_tools.advise import geometry

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """A finished run: its model, the seconds of its phases, its states and tables."""
-from __future__ import annotations
-
 import functools
 import re
 

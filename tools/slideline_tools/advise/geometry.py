@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Mirror images of the mesh of a run."""
-from __future__ import annotations
-
 import numpy as np
 
 

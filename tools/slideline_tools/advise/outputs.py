@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Advice on what was written: more often than its own content needs."""
-from __future__ import annotations
-
 import numpy as np
 
 from slideline_tools.advise.report import Advice

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """A piece of advice, and how all of them are shown."""
-from __future__ import annotations
-
 import dataclasses
 import json
 

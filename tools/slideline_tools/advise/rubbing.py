@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Advice on friction: none that counts, and sliding that flutters because nothing damps it."""
-from __future__ import annotations
-
 import numpy as np
 
 from slideline_tools.advise.report import Advice

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Advice on the number of threads."""
-from __future__ import annotations
-
 import re
 
 from slideline_tools.advise.report import Advice

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """The two surfaces of each interface as the program walks them, and whether they met."""
-from __future__ import annotations
-
 import numpy as np
 
 from slideline_tools.draw.surface import Surface

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Advice on interfaces: never touched, touched for a while or in places, long flight before."""
-from __future__ import annotations
-
 import numpy as np
 
 from slideline_tools.advise.report import Advice

@@ -6,8 +6,6 @@ The deck is the effective deck of a run. Conditions of nodes pass to a new node 
 element, have them; nodal loads become those of the same line load; the step, where the deck gives one, and the compliance
 of a penalty per length go down as the size of the elements.
 """
-from __future__ import annotations
-
 import itertools
 
 import numpy as np
@@ -255,16 +253,6 @@ def check_known(blocks: list[Block], *others: str) -> None:
             raise UserError(f"a mesh with *{block.keyword} cannot be divided")
 
 
-def deck_of(blocks: list[Block], deck: Division) -> str:
-    """The text of the deck."""
-    lines = []
-    for block in blocks:
-        if block.keyword == "END":
-            break
-        lines += deck.block(block)
-    return "\n".join([*lines, *deck.further(), "*END"]) + "\n"
-
-
 class Division:
     """The blocks of a deck for a divided mesh."""
 
@@ -430,6 +418,16 @@ class Division:
         rows = [f"{node},{system},{int(k == 0)},{int(k == 1)}" for (system, k), nodes in held.items()
                 for node in self.mesh.new_in(nodes) if node not in there[system, k]]
         return [*lines, *(["*BOUNDARY_SPC_NODE", *rows] if rows else [])]
+
+
+def deck_of(blocks: list[Block], deck: Division) -> str:
+    """The text of the deck."""
+    lines = []
+    for block in blocks:
+        if block.keyword == "END":
+            break
+        lines += deck.block(block)
+    return "\n".join([*lines, *deck.further(), "*END"]) + "\n"
 
 
 def rows_of(numbers) -> list[str]:

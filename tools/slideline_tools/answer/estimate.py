@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The value that runs on several meshes tend to, and its uncertainty: least squares of f = f0 + c h^p with weights 1/h
 (Eca & Hoekstra, J. Comput. Phys. 262, 2014), in the words of ASME V&V 20."""
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """The loop: runs on finer meshes until every quantity is within its uncertainty, or the budget or the mesh says no."""
-from __future__ import annotations
-
 import dataclasses
 import math
 import time

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Runs of a deck on finer and finer meshes, kept in a folder and taken up again."""
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import hashlib

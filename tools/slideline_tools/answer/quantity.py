@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Quantities of a run by their words: HISTORY:COLUMN[@KEY=VALUE,...][:MEASURE] and field:NAME[@x=X,y=Y]:MEASURE."""
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

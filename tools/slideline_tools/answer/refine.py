@@ -4,8 +4,6 @@
 Neighbours differ by one division at most, and the elements along a contact surface are divided all or none, so that
 surfaces have no hanging nodes. What refers to the mesh is carried along as by `divide`.
 """
-from __future__ import annotations
-
 import itertools
 import typing
 

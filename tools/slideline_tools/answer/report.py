@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """What an answer looks like: a table, a chart, JSON."""
-from __future__ import annotations
-
 import json
 import math
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The commands of `slideline-tools`. Each imports what it needs when it runs, so that help and
 completion are quick."""
-from __future__ import annotations
-
 import argparse
 import textwrap
 import typing

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """The command answer: a number with its error, at least cost."""
-from __future__ import annotations
-
 import math
 import pathlib
 import signal

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The commands that write decks: make-deck, from-mesh and refine. An option of a scene has the name of the
 parameter of the function that writes it, and what is not given is left to that function."""
-from __future__ import annotations
-
 import argparse
 import pathlib
 

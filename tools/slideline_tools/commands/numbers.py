@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """The commands that judge a run or write it for others: compare, advise, binout, d3plot."""
-from __future__ import annotations
-
 import dataclasses
 
 from slideline_tools import UserError

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """The commands that show a run or a model: info, plot, animate, revolve, report and draw."""
-from __future__ import annotations
-
 import argparse
 import pathlib
 
@@ -105,8 +103,8 @@ draw results/collision -o collision.png
 def info(options) -> int:
     """Print what a results file holds."""
     from slideline_tools.describe import describe
-    from slideline_tools.results import open_run
-    print("\n".join(describe(open_run(options.results))))
+    from slideline_tools.results import read
+    print("\n".join(describe(read(options.results))))
     return 0
 
 
@@ -125,8 +123,8 @@ def animate(options) -> int:
     from slideline_tools import animation
     from slideline_tools.files import output
     from slideline_tools.mirrored import Mirrored
-    from slideline_tools.results import open_run
-    results = open_run(options.results)
+    from slideline_tools.results import read
+    results = read(options.results)
     path = output(options.output, [results.path])
     count = animation.animate(Mirrored(results) if options.mirror else results, path, options.field,
                               options.scale, options.rate, options.zoom)
@@ -138,8 +136,8 @@ def revolve(options) -> int:
     """Write solids, or draw one state of them."""
     from slideline_tools import UserError
     from slideline_tools import revolve as solids
-    from slideline_tools.results import open_run
-    results = open_run(options.results)
+    from slideline_tools.results import read
+    results = read(options.results)
     if options.output.endswith(".vtkhdf"):
         solids.write(results, options.output, options.degrees, options.sectors)
     elif options.output.endswith(".png"):

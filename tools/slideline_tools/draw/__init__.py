@@ -4,8 +4,6 @@
     from slideline_tools.draw import draw
     draw("collision.k", "model.png", program="build/release/slideline")
 """
-from __future__ import annotations
-
 import os
 import pathlib
 import typing

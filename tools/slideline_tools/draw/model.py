@@ -7,8 +7,6 @@ sets, interfaces, conditions and loads.
 
 Lengths, times and forces are in the units of the deck.
 """
-from __future__ import annotations
-
 import dataclasses
 import json
 import os

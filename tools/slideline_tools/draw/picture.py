@@ -4,8 +4,6 @@
 Symbols and arrows have their size on paper, whatever the size of the model. Long rows of
 symbols are thinned out to what can be distinguished.
 """
-from __future__ import annotations
-
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Surfaces: segments walked counter-clockwise round their body, so that it lies on the left and the outward normal of
 the unit tangent t is (t_y, -t_x)."""
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

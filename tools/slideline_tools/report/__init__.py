@@ -4,8 +4,6 @@
     from slideline_tools.report import write_report
     write_report("results/collision", "report.html")
 """
-from __future__ import annotations
-
 import pathlib
 
 from slideline_tools import __version__, files

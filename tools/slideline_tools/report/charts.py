@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """The charts of a report: histories, contact pressure, timing."""
-from __future__ import annotations
-
 import matplotlib.pyplot as plt
 import numpy as np
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Everything that a run has left, as far as it is there: also of one killed or still running."""
-from __future__ import annotations
-
 import dataclasses
 import functools
 import os

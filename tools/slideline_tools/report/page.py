@@ -4,8 +4,6 @@
 A block is ("heading", words), ("text", words), ("note", words), ("warning", words),
 ("table", Table), ("grid", [Picture, ...]) or ("folded", (title, text)).
 """
-from __future__ import annotations
-
 import base64
 import dataclasses
 import io

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The sections of a report. Each is a function of the run that gives the blocks of a section (see
 page.py), none when the run has nothing for it."""
-from __future__ import annotations
-
 import os
 import re
 import time

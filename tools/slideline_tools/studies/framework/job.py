@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """What a study consists of: its jobs, and what is made of their results."""
-from __future__ import annotations
-
 import dataclasses
 import hashlib
 import json

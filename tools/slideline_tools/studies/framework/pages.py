@@ -6,8 +6,6 @@ doc/studies are written and quote them. Both name in the third line the source a
 the digest of those sources. Where the digest is another today a page is behind the code; that has to be allowed openly,
 in doc/studies/README.md (tests/house/test_pages.py).
 """
-from __future__ import annotations
-
 import dataclasses
 import hashlib
 import importlib

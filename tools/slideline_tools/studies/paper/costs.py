@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Tables 1 and 2 and Figs. 23, 24, 29 and 32 of the paper: what contact costs, beside what it costs there."""
-from __future__ import annotations
-
 import dataclasses
 from typing import Callable, Mapping, Sequence
 
