@@ -30,9 +30,9 @@ except ModuleNotFoundError:  # Python before 3.11
     import tomli as tomllib
 
 from slideline_tools import UserError
-from slideline_tools.compare import (MEASURES, Tolerance, Unusable, compare, judged_columns,
+from slideline_tools.compare import (MEASURES, Tolerance, compare, judged_columns,
                                      require_usable, unique_times)
-from slideline_tools.histories import History, HistoryError, read_csv
+from slideline_tools.histories import History, read_csv
 
 ROWS = 20
 TIME_DIGITS = 10
@@ -133,10 +133,10 @@ def at_times_of(reference, table):
     ours, theirs = dict(table.series()), dict(numbered.series())
     if set(ours) != set(theirs):
         odd = ", ".join(sorted(map(str, set(ours) ^ set(theirs))))
-        raise Unusable(f"{reference.name}: only one of the tables has {reference.entity_columns} {odd}")
+        raise UserError(f"{reference.name}: only one of the tables has {reference.entity_columns} {odd}")
     end, wanted = table["time"][-1], reference["time"][-1]
     if abs(end - wanted) > np.max(np.diff(table["time"]), initial=0.0):
-        raise Unusable(f"{reference.name}: the run ends at {end:g}, the reference at {wanted:g}")
+        raise UserError(f"{reference.name}: the run ends at {end:g}, the reference at {wanted:g}")
     columns = {**reference.columns, **{name: np.zeros(len(reference)) for name in names}}
     for entity, rows in theirs.items():
         for name in names:
@@ -166,7 +166,7 @@ def run_case(case, program, work, out):
         for report in reports:
             print(report.text(), file=out)
         return 0 if all(report.passed for report in reports) else 1
-    except (CaseError, HistoryError, Unusable, OSError) as problem:
+    except (UserError, OSError) as problem:
         print(f"{case.folder.name}: {problem}", file=out)
         return 2
 

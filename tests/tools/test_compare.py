@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from slideline_tools.compare import Tolerance, Unusable, compare
-from slideline_tools.histories import History, HistoryError, read_csv
+from slideline_tools import UserError
+from slideline_tools.compare import Tolerance, compare
+from slideline_tools.histories import History, read_csv
 
 TIME = np.linspace(0.0, 2.0, 201)
 
@@ -123,7 +124,7 @@ def test_entities_are_reported_apart():
 def test_other_entities_are_unusable():
     other = entities(1.0)
     other.columns["node"] = other["node"] + 1
-    with pytest.raises(Unusable, match="only one of the tables"):
+    with pytest.raises(UserError, match="only one of the tables"):
         compare(other, entities(1.0))
 
 
@@ -133,29 +134,29 @@ def test_not_a_number_is_refused(broken, side):
     values = np.sin(np.pi * TIME)
     values[7] = broken
     pair = {"result": table(), "reference": table(), side: table(values)}
-    with pytest.raises(Unusable, match=f"{side} holds {broken} in column force, row 8"):
+    with pytest.raises(UserError, match=f"{side} holds {broken} in column force, row 8"):
         compare(pair["result"], pair["reference"])
 
 
 def test_not_a_number_in_a_column_that_is_not_judged():
     other = table(other=np.full_like(TIME, np.nan))
-    with pytest.raises(Unusable, match="column other"):
+    with pytest.raises(UserError, match="column other"):
         compare(other, table(), ["force"])
 
 
 def test_missing_column_empty_table_and_no_overlap():
-    with pytest.raises(Unusable, match="result lacks the column torque"):
+    with pytest.raises(UserError, match="result lacks the column torque"):
         compare(table(), table(torque=TIME))
-    with pytest.raises(Unusable, match="result has no rows"):
+    with pytest.raises(UserError, match="result has no rows"):
         compare(table(np.array([]), np.array([])), table())
-    with pytest.raises(Unusable, match="reference has no rows"):
+    with pytest.raises(UserError, match="reference has no rows"):
         compare(table(), table(np.array([]), np.array([])))
-    with pytest.raises(Unusable, match="no common time"):
+    with pytest.raises(UserError, match="no common time"):
         compare(table(time=TIME + 10.0), table())
 
 
 def test_time_that_runs_back():
-    with pytest.raises(Unusable, match="back in time"):
+    with pytest.raises(UserError, match="back in time"):
         compare(table(time=TIME[::-1]), table())
 
 
@@ -192,7 +193,7 @@ def test_command_line_missing_file(tmp_path, tool):
 
 def test_what_is_no_table_is_said(tmp_path):
     (tmp_path / "a.vtkhdf").write_bytes(b"\x89HDF\r\n\x1a\n")
-    with pytest.raises(HistoryError, match="no text; wanted is a CSV table"):
+    with pytest.raises(UserError, match="no text; wanted is a CSV table"):
         read_csv(tmp_path / "a.vtkhdf")
-    with pytest.raises(HistoryError, match="compare_folder"):
+    with pytest.raises(UserError, match="compare_folder"):
         read_csv(tmp_path)

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from slideline_tools import plots
+from slideline_tools import UserError, plots
 from slideline_tools.fields import default_field, scalar_field
 from slideline_tools.report import charts
-from slideline_tools.results import ResultsError, read
+from slideline_tools.results import read
 
 
 def assert_picture(path):
@@ -84,7 +84,7 @@ def test_two_panels_in_the_report_picture(results_file):
     results = read(results_file)
     assert [title for _, title in plots.report_requests(results)] == [
         "energy", "contact force in y"]
-    with pytest.raises(ResultsError):
+    with pytest.raises(UserError):
         plots.report_figure(results, state="9")
 
 

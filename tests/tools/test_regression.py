@@ -8,7 +8,8 @@ import conftest
 import numpy as np
 import pytest
 
-from slideline_tools.compare import Unusable, compare
+from slideline_tools import UserError
+from slideline_tools.compare import compare
 from slideline_tools.histories import History, read_csv
 
 sys.path.append(str(conftest.ROOT / "tests" / "regression"))
@@ -151,7 +152,7 @@ def test_only_the_kept_rows_are_compared_each_within_its_tolerance(tmp_path):
 def test_rows_of_other_entities_or_none_fail():
     reference = long_table().rows(kept_rows(long_table(), ["vy"]))
     for wrong in (long_table().where(node=7), long_table().rows(slice(0, 0))):
-        with pytest.raises(Unusable):
+        with pytest.raises(UserError):
             at_times_of(reference, wrong)
 
 

@@ -5,8 +5,9 @@ import h5py
 import numpy as np
 import pytest
 
-from slideline_tools.histories import HistoryError, read_csv
-from slideline_tools.results import ResultsError, read
+from slideline_tools import UserError
+from slideline_tools.histories import read_csv
+from slideline_tools.results import read
 
 
 def test_states_and_points(results_file):
@@ -62,17 +63,17 @@ def test_choice_of_state(results_file, wanted, index):
 
 @pytest.mark.parametrize("wanted", ["3", "-4", "1.5", "last"])
 def test_state_out_of_range(results_file, wanted):
-    with pytest.raises(ResultsError):
+    with pytest.raises(UserError):
         read(results_file).state_index(wanted)
 
 
 def test_missing_field_names_those_there_are(results_file):
-    with pytest.raises(ResultsError, match="no cell field 'strain'.*plastic_strain"):
+    with pytest.raises(UserError, match="no cell field 'strain'.*plastic_strain"):
         read(results_file).cell_field("strain")
 
 
 def test_missing_file_and_other_file(tmp_path):
-    with pytest.raises(ResultsError, match="no such file"):
+    with pytest.raises(UserError, match="no such file"):
         read(tmp_path / "none.vtkhdf")
     other = tmp_path / "other.vtkhdf"
     other.write_text("not HDF5")
@@ -80,7 +81,7 @@ def test_missing_file_and_other_file(tmp_path):
     with h5py.File(dump, "w") as stream:
         stream["cycle"] = 1
     for path in (other, dump):
-        with pytest.raises(ResultsError) as caught:
+        with pytest.raises(UserError) as caught:
             read(path)
         assert str(caught.value) == f"cannot read {path}: it is no results file (<job>.vtkhdf)"
 
@@ -103,5 +104,5 @@ def test_csv_columns(tmp_path):
 def test_broken_csv(tmp_path, text, message):
     path = tmp_path / "job.glstat.csv"
     path.write_text(text)
-    with pytest.raises(HistoryError, match=message):
+    with pytest.raises(UserError, match=message):
         read_csv(path)

@@ -9,9 +9,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from slideline_tools import UserError
 from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.decks import Grid
-from slideline_tools.histories import History, HistoryError, energy_made
+from slideline_tools.histories import History, energy_made
 from slideline_tools.studies.common import verification
 from slideline_tools.studies.framework.job import Options
 from slideline_tools.studies.stability import measures, page as pages, study as stability
@@ -201,7 +202,7 @@ def test_energy_made_is_seen_behind_what_springs_hold_and_damping_takes():
     glstat = History("glstat", {"total": whole, "external_work": 0.0 * whole,
                                 "contact": np.array([0.0, 8.0, 7.0])})
     assert measures.energies(glstat, sleout) == pytest.approx((0.0, 0.15))
-    with pytest.raises(HistoryError, match="no rows"):
+    with pytest.raises(UserError, match="no rows"):
         energy_made(sleout.rows(slice(0, 0)))
 
 

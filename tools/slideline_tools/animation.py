@@ -2,26 +2,25 @@
 """Moving pictures of a field on the deformed mesh (GIF by Pillow, MP4 by ffmpeg)."""
 import pathlib
 
-from slideline_tools import plots
+from slideline_tools import UserError, plots
 from slideline_tools.fields import default_field, scalar_field
 from slideline_tools.plots import plt
-from slideline_tools.results import ResultsError
 
 PIXELS_PER_INCH = 110
 
 
 def writer_for(path, rate):
-    """The writer of matplotlib for a file name; raises ResultsError if it cannot be used."""
+    """The writer of matplotlib for a file name; raises UserError if it cannot be used."""
     from matplotlib import animation
     suffix = pathlib.Path(path).suffix.lower()
     if suffix == ".gif":
         return animation.PillowWriter(fps=rate)
     if suffix == ".mp4":
         if not animation.FFMpegWriter.isAvailable():
-            raise ResultsError("MP4 needs the program ffmpeg, which is not installed here; "
+            raise UserError("MP4 needs the program ffmpeg, which is not installed here; "
                                "install it or choose a name that ends in .gif")
         return animation.FFMpegWriter(fps=rate)
-    raise ResultsError(f"'{path}': an animation is written to a .gif or .mp4 file")
+    raise UserError(f"'{path}': an animation is written to a .gif or .mp4 file")
 
 
 def animate(results, path, name=None, scale=1.0, rate=12, zoom=None):
@@ -30,7 +29,7 @@ def animate(results, path, name=None, scale=1.0, rate=12, zoom=None):
     field = scalar_field(results, name or default_field(results))
     states = range(results.n_state)
     if not results.n_state:
-        raise ResultsError(f"{results.path}: no states")
+        raise UserError(f"{results.path}: no states")
     limits = field.limits()
     with plt.rc_context(dict(plots.STYLE, **{"savefig.dpi": PIXELS_PER_INCH})):
         zoom = plots.window(results, states, scale, zoom)

@@ -25,10 +25,6 @@ BRANCHES = {"rwforc": "rwforc/forces", "elout": "elout/shell"}
 LEGEND_WIDTH = 70
 
 
-class BinoutError(UserError):
-    """A run without tables."""
-
-
 class Rows:
     """A table by instants: `column(name)` is (n_instant, n_entity), 0 where the run has none."""
 
@@ -36,7 +32,7 @@ class Rows:
         self.table, self.run = table, run
         self.ids = table[entity][table["time"] == table["time"][0]] if entity else np.zeros(1, int)
         if len(table) % len(self.ids):
-            raise BinoutError(f"{table.name}: an instant that is not whole")
+            raise UserError(f"{table.name}: an instant that is not whole")
         self.zero = np.zeros((len(table) // len(self.ids), len(self.ids)))
 
     def column(self, name):
@@ -230,7 +226,7 @@ def write_binout(run, path):
     run = run if isinstance(run, Run) else Run(run)
     tables = {name: table for name, table in run.tables_for_dyna().items() if name in FORMS and len(table)}
     if not tables:
-        raise BinoutError(f"{run.prefix} has no history tables")
+        raise UserError(f"{run.prefix} has no history tables")
     with Writer(output(path, run.files())) as file:
         for name, table in tables.items():
             for branch, rows in branches_of(name, table):

@@ -22,10 +22,6 @@ WITHOUT_IMPULSE = INTEGER_COLUMNS + ("state",)
 COMPONENT = re.compile(r"([xyz]{2}|[xyz])$")
 
 
-class Unusable(UserError):
-    """Tables that cannot be compared: columns or entities missing, no rows, not a number."""
-
-
 @dataclasses.dataclass(frozen=True)
 class Tolerance:
     """What may differ.
@@ -104,7 +100,7 @@ class Report:
 
 
 def compare(result, reference, columns=None, tolerances=None, default=Tolerance()):
-    """Report on two History tables; raises Unusable if they cannot be compared.
+    """Report on two History tables; raises UserError if they cannot be compared: columns or entities missing, no rows, not a number.
 
     `columns`: those to judge (default: all value columns of the reference);
     `tolerances`: dict of Tolerance by column, for the others `default` holds.
@@ -113,12 +109,12 @@ def compare(result, reference, columns=None, tolerances=None, default=Tolerance(
     require_usable(result, "result", columns)
     require_usable(reference, "reference", columns)
     if result.entity_columns != reference.entity_columns:
-        raise Unusable(f"the tables tell their series apart by {result.entity_columns} "
+        raise UserError(f"the tables tell their series apart by {result.entity_columns} "
                        f"and {reference.entity_columns}")
     ours, theirs = dict(result.series()), dict(reference.series())
     if set(ours) != set(theirs):
         odd = sorted(map(str, set(ours) ^ set(theirs)))
-        raise Unusable(f"only one of the tables has {reference.entity_columns} {', '.join(odd)}")
+        raise UserError(f"only one of the tables has {reference.entity_columns} {', '.join(odd)}")
     checks = []
     for column in columns:
         tolerance = (tolerances or {}).get(column, default)
@@ -138,20 +134,20 @@ def components(column, table):
 def require_usable(table, role, columns):
     """Refuse a table without rows, time, a wanted column, or with a value that is no number."""
     if not len(table):
-        raise Unusable(f"the {role} has no rows")
+        raise UserError(f"the {role} has no rows")
     missing = [name for name in ["time"] + columns if name not in table]
     if missing:
-        raise Unusable(f"the {role} lacks the column {', '.join(missing)}")
+        raise UserError(f"the {role} lacks the column {', '.join(missing)}")
     for name, values in table.columns.items():
         if name in TEXT_COLUMNS:
             continue
         broken = np.flatnonzero(~np.isfinite(values.astype(float)))
         if broken.size:
-            raise Unusable(f"the {role} holds {values[broken[0]]} in column {name}, "
+            raise UserError(f"the {role} holds {values[broken[0]]} in column {name}, "
                            f"row {broken[0] + 1}")
     for entity, rows in table.series():
         if np.any(np.diff(rows["time"]) < 0.0):
-            raise Unusable(f"the {role} runs back in time {table.entity_label(entity)}")
+            raise UserError(f"the {role} runs back in time {table.entity_label(entity)}")
 
 
 def series_checks(column, entity, result, reference, tolerance, atol):
@@ -164,7 +160,7 @@ def series_checks(column, entity, result, reference, tolerance, atol):
     t, y = unique_times(result["time"], result[column])
     t_ref, y_ref = unique_times(reference["time"], reference[column])
     if t[-1] < t_ref[0] or t[0] > t_ref[-1]:
-        raise Unusable(f"no common time: result {t[0]:g} to {t[-1]:g}, "
+        raise UserError(f"no common time: result {t[0]:g} to {t[-1]:g}, "
                        f"reference {t_ref[0]:g} to {t_ref[-1]:g}")
     span = t_ref[-1] - t_ref[0]
     spare = max(np.max(np.diff(t_ref), initial=0.0), 1.0e-9 * abs(t_ref[-1]))
@@ -203,5 +199,5 @@ def judged_columns(table, names):
     unknown = [name for name in names
                if name in ENTITY_COLUMNS + TEXT_COLUMNS + ("time",) or name not in table]
     if unknown:
-        raise Unusable(f"not a value column of {table.name}: {', '.join(unknown)}")
+        raise UserError(f"not a value column of {table.name}: {', '.join(unknown)}")
     return list(names)

@@ -33,15 +33,11 @@ WORDS = {"file_type": 12, "version": 15, "ndim": 16, "numnp": 17, "icode": 18, "
          "ioshl2": 45, "ioshl3": 46, "ioshl4": 47, "nmmat": 52}
 
 
-class D3plotError(UserError):
-    """A run without states."""
-
-
 def write_d3plot(run, path, file_limit=FILE_LIMIT):
     """Write the states of a run (folder, results file, or `Run`) to the family `path`, `path`01 ...; number of states."""
     run = run if isinstance(run, Run) else Run(run)
     if run.results is None or not run.results.n_state:
-        raise D3plotError(f"{run.prefix} has no states: the deck asks for none (*DATABASE_BINARY_D3PLOT)")
+        raise UserError(f"{run.prefix} has no states: the deck asks for none (*DATABASE_BINARY_D3PLOT)")
     path = pathlib.Path(path)
     parts = np.unique(run.results.cell_field("part_id")[0])
     output(path, run.files()).write_bytes(geometry(run, parts))

@@ -2,8 +2,9 @@
 """Fields to draw: from a name such as `plastic_strain`, `velocity:y` or `stress:xy` to scalars."""
 import numpy as np
 
+from slideline_tools import UserError
 from slideline_tools.names import missing
-from slideline_tools.results import STRESS_COMPONENTS, VECTOR_COMPONENTS, ResultsError
+from slideline_tools.results import STRESS_COMPONENTS, VECTOR_COMPONENTS
 
 # What the number is, and whether it has a unit (that of the deck, whatever it is).
 LABELS = {
@@ -74,13 +75,13 @@ def scalar_field(results, name):
         values, at_nodes, components = results.cell_field(base), False, STRESS_COMPONENTS
     else:
         present = results.point_fields + results.cell_fields
-        raise ResultsError(f"no field '{base}'{missing(base, present)}")
+        raise UserError(f"no field '{base}'{missing(base, present)}")
     text, has_unit = LABELS.get(base, (base.replace("_", " "), True))
     values = without_round_off(values, largest(values))
     if values.ndim == 3:
         values, text = pick_component(base, values, component, components, text)
     elif component:
-        raise ResultsError(f"field '{base}' has no components")
+        raise UserError(f"field '{base}' has no components")
     return ScalarField(values, at_nodes, text + (" (deck units)" if has_unit else ""))
 
 
@@ -90,7 +91,7 @@ def pick_component(base, values, component, names, text):
         return values[:, :, names.index(component)], f"{text} {component}"
     if component or values.shape[2] == 6:
         choices = ", ".join(f"{base}:{one}" for one in names[:values.shape[2]])
-        raise ResultsError(f"which component of '{base}'? choose one of {choices}")
+        raise UserError(f"which component of '{base}'? choose one of {choices}")
     return np.linalg.norm(values, axis=2), f"{text}, magnitude"
 
 

@@ -42,7 +42,7 @@ class Run:
         return self.open_results()
 
     def open_results(self) -> Results | None:
-        """The results file; ResultsError where it is damaged."""
+        """The results file; UserError where it is damaged."""
         return read(self.path(".vtkhdf")) if self.path(".vtkhdf").exists() else None
 
     @functools.cached_property

@@ -25,10 +25,6 @@ SIDES = {1: "slave", 2: "master"}
 trapezoid = getattr(np, "trapezoid", None) or getattr(np, "trapz")
 
 
-class HistoryError(UserError):
-    """A table that cannot be read or lacks what was asked of it."""
-
-
 class History:
     """One table: equally long columns by name.
 
@@ -40,7 +36,7 @@ class History:
         self.name = name
         self.columns = dict(columns)
         if len({len(column) for column in self.columns.values()}) > 1:
-            raise HistoryError(f"{name}: columns of different length")
+            raise UserError(f"{name}: columns of different length")
 
     def __repr__(self) -> str:
         span = f", time {self['time'][0]:.4g} to {self['time'][-1]:.4g}" if "time" in self and len(self) else ""
@@ -50,7 +46,7 @@ class History:
         try:
             return self.columns[column]
         except KeyError:
-            raise HistoryError(f"{self.name} has no column '{column}'{missing(column, self.columns)}") from None
+            raise UserError(f"{self.name} has no column '{column}'{missing(column, self.columns)}") from None
 
     def __contains__(self, column: str) -> bool:
         return column in self.columns
@@ -82,7 +78,7 @@ class History:
         keep = np.ones(len(self), dtype=bool)
         for name, value in wanted.items():
             if name == "side" and value not in SIDES.values():
-                raise HistoryError(f"{self.name} has no side '{value}'{missing(value, SIDES.values())}")
+                raise UserError(f"{self.name} has no side '{value}'{missing(value, SIDES.values())}")
             keep &= self[name] == value
         return self.rows(keep)
 
@@ -109,7 +105,7 @@ class History:
 def read_csv(path: str | os.PathLike) -> History:
     """The table in a CSV file of the program or in one of the same form.
 
-    Raises HistoryError if the file is missing, empty, ragged or holds text in a number column.
+    Raises UserError if the file is missing, empty, ragged or holds text in a number column.
     """
     path = pathlib.Path(path)
     try:
@@ -120,15 +116,15 @@ def read_csv(path: str | os.PathLike) -> History:
                if isinstance(problem, UnicodeDecodeError) else
                "it is a folder; wanted is a CSV table (all tables of two folders: "
                "tools/batch/compare_folder.sh)" if path.is_dir() else problem.strerror or problem)
-        raise HistoryError(f"cannot read {path}: {why}") from problem
+        raise UserError(f"cannot read {path}: {why}") from problem
     if not rows:
-        raise HistoryError(f"{path}: the file is empty")
+        raise UserError(f"{path}: the file is empty")
     names, rows = rows[0], rows[1:]
     if len(set(names)) < len(names):
-        raise HistoryError(f"{path}: a column name occurs twice")
+        raise UserError(f"{path}: a column name occurs twice")
     for number, row in enumerate(rows, start=2):
         if len(row) != len(names):
-            raise HistoryError(f"{path}: line {number} has {len(row)} fields, "
+            raise UserError(f"{path}: line {number} has {len(row)} fields, "
                                f"the header has {len(names)}")
     columns = zip(*rows) if rows else [()] * len(names)
     return History(table_name(path), {name: as_column(path, name, texts)
@@ -140,10 +136,10 @@ def energy_made(sleout: History) -> np.ndarray:
     they hold and gave beyond what they took, where that is above 0, added up. Work of damping (VDC) is
     no part of it, and energy that the springs still hold does not hide what they made.
 
-    One value per time in order of appearance; HistoryError if there are no rows.
+    One value per time in order of appearance; UserError if there are no rows.
     """
     if not len(sleout):
-        raise HistoryError("sleout has no rows")
+        raise UserError("sleout has no rows")
     _, place = np.unique(sleout["time"], return_inverse=True)
     return np.bincount(place, np.maximum(0.0, sleout["stored"] - sleout["energy"]))
 
@@ -160,7 +156,7 @@ def as_column(path, name, texts):
     try:
         values = np.array([float(text) for text in texts])
     except ValueError as problem:
-        raise HistoryError(f"{path}: column {name}: {problem}") from None
+        raise UserError(f"{path}: column {name}: {problem}") from None
     if name in INTEGER_COLUMNS and np.all(np.isfinite(values)) and np.all(values % 1 == 0):
         return values.astype(int)
     return values
@@ -172,15 +168,15 @@ def from_hdf5(name: str, group) -> History:
     for column in column_order(group):
         values = group[column][()]
         if getattr(values, "ndim", 0) != 1:
-            raise HistoryError(f"{name}: the column {column} is no list of values")
+            raise UserError(f"{name}: the column {column} is no list of values")
         if column == "side" and values.dtype.kind in "iu":
             values = np.array([SIDES.get(int(value), str(value)) for value in values], dtype=str)
         elif values.dtype.kind in "SO":
             values = np.array([v.decode(errors="replace") if isinstance(v, bytes) else str(v) for v in values])
         elif values.dtype.kind not in "iuf":
-            raise HistoryError(f"{name}: the column {column} holds no numbers")
+            raise UserError(f"{name}: the column {column} holds no numbers")
         if values.dtype.kind == "U" and column not in TEXT_COLUMNS:
-            raise HistoryError(f"{name}: the column {column} holds no numbers")
+            raise UserError(f"{name}: the column {column} holds no numbers")
         columns[column] = values
     shortest = min((len(values) for values in columns.values()), default=0)
     # A killed run may have grown some columns by a row that others lack.

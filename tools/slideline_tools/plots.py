@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
+from slideline_tools import UserError
 from slideline_tools.fields import default_field, largest, scalar_field, without_round_off
-from slideline_tools.results import ResultsError
 from slideline_tools.walls import draw_walls, walls_of
 
 # Pictures go to files, without a window; except in a notebook, and where $MPLBACKEND says otherwise.
@@ -219,11 +219,11 @@ def parse_history(request):
     for entry in filters:
         name, equals, value = entry.partition("=")
         if not equals:
-            raise ResultsError(f"'{entry}': expected COLUMN=VALUE after @")
+            raise UserError(f"'{entry}': expected COLUMN=VALUE after @")
         wanted[name] = value if name == "side" else number(value)
     names = [column for column in columns.split(",") if column]
     if not table or not names:
-        raise ResultsError(f"'{request}': expected TABLE:COLUMN,COLUMN[@ENTITY=VALUE]")
+        raise UserError(f"'{request}': expected TABLE:COLUMN,COLUMN[@ENTITY=VALUE]")
     return table, names, wanted
 
 
@@ -231,18 +231,18 @@ def number(text):
     try:
         return float(text)
     except ValueError:
-        raise ResultsError(f"'{text}' is not a number") from None
+        raise UserError(f"'{text}' is not a number") from None
 
 
 def draw_history(axes, results, request):
     """Lines of one request such as 'glstat:kinetic,internal'."""
     if request in results.histories:
-        raise ResultsError(f"'{request}': expected TABLE:COLUMN,COLUMN[@ENTITY=VALUE] with columns of "
+        raise UserError(f"'{request}': expected TABLE:COLUMN,COLUMN[@ENTITY=VALUE] with columns of "
                            + ", ".join(results.history(request).value_columns))
     table, columns, wanted = parse_history(request)
     history = results.history(table).where(**wanted)
     if not len(history):
-        raise ResultsError(f"'{request}': no rows")
+        raise UserError(f"'{request}': no rows")
     count = 0
     for entity, rows in history.series():
         for column in columns:
@@ -285,7 +285,7 @@ def contact_figure(results, states=("-1",)):
     contact = results.history("contact")
     interfaces = np.unique(contact["interface"]).tolist()
     if not interfaces:
-        raise ResultsError(f"{results.path}: the contact table is empty")
+        raise UserError(f"{results.path}: the contact table is empty")
     with page(results, len(interfaces), 2.8 * len(interfaces)) as (figure, panels):
         for axes, interface in zip(panels, interfaces):
             rows = contact.where(interface=interface)

@@ -73,7 +73,7 @@ class Outcome:
 
     @property
     def results(self) -> Results:
-        """States, fields and histories. ResultsError where the deck asks for no states."""
+        """States, fields and histories. UserError where the deck asks for no states."""
         self.require_run()
         return Results(self.folder / f"{self.job}.vtkhdf")
 

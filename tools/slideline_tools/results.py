@@ -35,10 +35,6 @@ DAMAGE = (OSError, KeyError, ValueError, TypeError, AttributeError, IndexError, 
 NO_RESULTS = "it is no results file (<job>.vtkhdf)"
 
 
-class ResultsError(UserError):
-    """A file that is missing, is no results file, or lacks what was asked of it."""
-
-
 def read(path: str | os.PathLike) -> Results:
     """The results of a run: `path` is its folder, `<job>.vtkhdf` or another file of the run.
 
@@ -96,14 +92,14 @@ class Results:
 
     @contextlib.contextmanager
     def reading(self, what: str) -> typing.Iterator[h5py.File]:
-        """The file, open; ResultsError where it, or what is read of it, is damaged."""
+        """The file, open; UserError where it, or what is read of it, is damaged."""
         try:
             with h5py.File(source(self.path), "r") as stream:
                 yield stream
         except UserError:
             raise
         except DAMAGE as problem:
-            raise ResultsError(f"cannot read {what + ' of ' if what else ''}{self.path}: "
+            raise UserError(f"cannot read {what + ' of ' if what else ''}{self.path}: "
                                f"{self._reason(problem)}") from problem
 
     def _reason(self, problem: Exception) -> str:
@@ -163,7 +159,7 @@ class Results:
                     raise ValueError(f"it should have {width or 1} numbers in a row")
             picked = [values[start:start + rows] for start in starts if start >= 0]
             if len(picked) != self.n_state or any(len(state) != rows for state in picked):
-                raise ResultsError(f"{self.path}: {path} is shorter than its states need")
+                raise UserError(f"{self.path}: {path} is shorter than its states need")
             self._arrays[path] = np.array(picked).reshape((self.n_state, rows) + values.shape[1:])
         return self._arrays[path]
 
@@ -193,7 +189,7 @@ class Results:
 
     def _require(self, name: str, present: list[str], kind: str) -> None:
         if name not in present:
-            raise ResultsError(f"{self.path}: no {kind} field '{name}'{missing(name, present)}")
+            raise UserError(f"{self.path}: no {kind} field '{name}'{missing(name, present)}")
 
     @property
     def cells(self) -> np.ndarray:
@@ -227,7 +223,7 @@ class Results:
         killed run, they are read from the CSV files beside it. Columns and units: doc/results.md.
         """
         if name not in self.histories:
-            raise ResultsError(f"{self.path}: no history '{name}'{missing(name, self.histories)}")
+            raise UserError(f"{self.path}: no history '{name}'{missing(name, self.histories)}")
         if name not in self._arrays:
             if name in self._in_file:
                 with self.reading(f"the history {name}") as stream:
@@ -249,24 +245,24 @@ class Results:
     def state_index(self, wanted: int | float | str) -> int:
         """Index of a state: an integer text counts states (-1 = last), a real is a time."""
         if not self.n_state:
-            raise ResultsError(f"{self.path}: no states")
+            raise UserError(f"{self.path}: no states")
         text = str(wanted)
         try:
             index = int(text)
         except ValueError:
             return self._nearest_state(text)
         if not -self.n_state <= index < self.n_state:
-            raise ResultsError(f"no state {index}: there are {self.n_state}, from 0 on")
+            raise UserError(f"no state {index}: there are {self.n_state}, from 0 on")
         return index % self.n_state
 
     def _nearest_state(self, text: str) -> int:
         try:
             time = float(text)
         except ValueError:
-            raise ResultsError(f"'{text}' is neither a state number nor a time") from None
+            raise UserError(f"'{text}' is neither a state number nor a time") from None
         spare = 1.0e-9 * abs(self.times[-1])
         if not self.times[0] - spare <= time <= self.times[-1] + spare:
-            raise ResultsError(f"time {time:g} is outside the states "
+            raise UserError(f"time {time:g} is outside the states "
                                f"({self.times[0]:g} to {self.times[-1]:g})")
         return int(np.argmin(np.abs(self.times - time)))
 

@@ -4,9 +4,9 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
+from slideline_tools import UserError
 from slideline_tools.draw.model import model_of
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, beside, plt, run_title
-from slideline_tools.results import ResultsError
 
 #: Column `state` of the contact table: words and shade of 0, 1, ...
 STATES = (("open", "#f4f4f4"), ("stick", "#0b559f"), ("slip", "#f0a030"), ("tied", "#2e7d32"), ("broken", "#8c8c8c"))
@@ -111,7 +111,7 @@ def zones_of(results, states=("-1",)):
     times = [results.times[results.state_index(state)] for state in states]
     figure = zones_figure(results.history("contact"), times, model_of(results.path.with_suffix("")))
     if figure is None:
-        raise ResultsError(f"{results.path}: no slave node ever stuck or slipped (its contact table "
+        raise UserError(f"{results.path}: no slave node ever stuck or slipped (its contact table "
                            "tells of no friction)")
     figure.suptitle(run_title(results), fontsize=9)
     return figure

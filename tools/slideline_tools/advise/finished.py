@@ -8,7 +8,7 @@ from slideline_tools.draw.model import Interface, Model, Part, model_of
 from slideline_tools.files import TABLES
 from slideline_tools.finished_run import Run
 from slideline_tools.histories import History, read_csv
-from slideline_tools.results import Results, ResultsError, read
+from slideline_tools.results import Results, read
 
 
 class Finished(Run):
@@ -38,7 +38,7 @@ class Finished(Run):
         """The states, all of whose arrays are read at once; None without a readable file or with a single state."""
         try:
             results = read(self.path(".vtkhdf"))
-        except ResultsError:
+        except UserError:
             return None
         if len(results.times) < 2:
             return None
