@@ -11,7 +11,7 @@ import pytest
 import wasteful_decks
 
 from slideline_tools import scenes
-from slideline_tools.advise import advise, bodies, finished, geometry, outputs, report, touching
+from slideline_tools.advise import advise, bodies, finished, report, running, touching
 
 def run_variant(folder, waste, *arguments):
     folder.mkdir(parents=True, exist_ok=True)
@@ -159,21 +159,21 @@ def test_symmetry_needs_nodes_on_the_cut(slideline, tmp_path, n_slave, expected)
 def test_mirror_images():
     points = np.array([[0, 0], [1, 0], [3, 0], [4, 0], [0, 1], [1, 1], [3, 1], [4, 1.0]])
     cells = np.array([[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6]])
-    pairs = geometry.mirror_pairs(points, 0)
+    pairs = bodies.mirror_pairs(points, 0)
     assert pairs.tolist() == [3, 2, 1, 0, 7, 6, 5, 4]
-    assert geometry.mirrored_cells(cells, pairs).tolist() == [2, 1, 0]
-    assert geometry.mirrored_cells(cells[:2], pairs) is None
+    assert bodies.mirrored_cells(cells, pairs).tolist() == [2, 1, 0]
+    assert bodies.mirrored_cells(cells[:2], pairs) is None
     points[[1, 5], 0] = 1.1
-    assert geometry.mirror_pairs(points, 0) is None
-    assert geometry.mirror_pairs(points, 1).tolist() == [4, 5, 6, 7, 0, 1, 2, 3]
+    assert bodies.mirror_pairs(points, 0) is None
+    assert bodies.mirror_pairs(points, 1).tolist() == [4, 5, 6, 7, 0, 1, 2, 3]
 
 
 def test_coarser_rows():
     times = np.linspace(0.0, 1.0, 101)
     straight, bent = np.stack([times], axis=1), np.stack([np.sin(40.0 * times)], axis=1)
-    assert outputs.coarse_error(times, straight, 10) < 1e-12
+    assert running.coarse_error(times, straight, 10) < 1e-12
     # Chord of a sine over the interval d: d^2/8 times the second derivative, over the range 2.
-    assert outputs.coarse_error(times, bent, 2) == pytest.approx(0.8 ** 2 / 8.0 / 2.0, rel=0.06)
+    assert running.coarse_error(times, bent, 2) == pytest.approx(0.8 ** 2 / 8.0 / 2.0, rel=0.06)
 
 
 def test_small_savings_are_left_out():
@@ -234,11 +234,11 @@ def test_rigid_part_strains_little_and_keeps_little_energy(runs):
 def test_output_written_too_often(runs):
     run = finished.Finished(runs["all"])
     run.seconds["output"] = 0.05 * run.total
-    assert outputs.too_often(run) == []
+    assert running.too_often(run) == []
     run.seconds["output"] = 0.5 * run.total
-    found = {item.what.split()[0]: item for item in outputs.too_often(run)}
+    found = {item.what.split()[0]: item for item in running.too_often(run)}
     assert "*DATABASE_GLSTAT from 1.22e-07 to" in found["glstat"].change
     assert 0.0 < found["glstat"].seconds < run.seconds["output"]
     # Energies of alternating rows do not lie on straight lines.
     run.tables["glstat"]["kinetic"][::2] *= 1.1
-    assert "glstat" not in {item.what.split()[0] for item in outputs.too_often(run)}
+    assert "glstat" not in {item.what.split()[0] for item in running.too_often(run)}

@@ -10,10 +10,10 @@ import typing
 
 import numpy as np
 
-from slideline_tools import UserError, __version__
+from slideline_tools import UserError, __version__, lsda
+from slideline_tools.effective_deck import interface_titles, part_titles
 from slideline_tools.files import output
 from slideline_tools.finished_run import Run
-from slideline_tools.lsda import Writer
 
 #: states of an element, as DYNA numbers them
 STATES = "elastic,plastic,failed"
@@ -89,7 +89,7 @@ def rcforc(rows, states):
     """Contact forces; side 0 is the slave surface, 1 the master surface."""
     states["mass"] = rows.zero
     side = rows.table["side"][:len(rows.ids)] == "master"
-    return {"ids": rows.ids, "side": side.astype(int), **rows.legend(rows.run.interface_titles())}
+    return {"ids": rows.ids, "side": side.astype(int), **rows.legend(interface_titles(rows.run.deck))}
 
 
 def nodout(rows, states):
@@ -106,7 +106,7 @@ def matsum(rows, states):
         states[f"{axis}_rbvelocity"] = states[f"{axis}_momentum"] / mass
     states["added_mass"] = rows.column("added_mass")
     states["eroded_kinetic_energy"] = states["eroded_internal_energy"] = rows.zero
-    return {"ids": rows.ids, **rows.legend(rows.run.part_titles())}
+    return {"ids": rows.ids, **rows.legend(part_titles(rows.run.deck))}
 
 
 def sleout(rows, states):
@@ -118,7 +118,7 @@ def sleout(rows, states):
     states["total_slave"] = states["total_energy"] = states["slave"].sum(axis=1)
     states["total_master"] = rows.zero[:, 0]
     return {"ids": rows.ids, "single_sided": np.ones(len(rows.ids), dtype=int),
-            **rows.legend(rows.run.interface_titles())}
+            **rows.legend(interface_titles(rows.run.deck))}
 
 
 def spcforc(rows, states):
@@ -190,7 +190,7 @@ def rbdout(rows, states):
         states[f"dircos_{place}"] = turned.get(place, rows.zero)
     if "cycle" in rows.table:
         states["cycle"] = rows.first("cycle")
-    return {"ids": rows.ids, "num_nodal": 0, **rows.legend(rows.run.part_titles())}
+    return {"ids": rows.ids, "num_nodal": 0, **rows.legend(part_titles(rows.run.deck))}
 
 
 FORCE = {"force": ("fx", "fy")}
@@ -227,10 +227,9 @@ def write_binout(run, path):
     tables = {name: table for name, table in run.tables_for_dyna().items() if name in FORMS and len(table)}
     if not tables:
         raise UserError(f"{run.prefix} has no history tables")
-    with Writer(output(path, run.files())) as file:
-        for name, table in tables.items():
-            for branch, rows in branches_of(name, table):
-                write_branch(file, branch, FORMS[name], rows, run)
+    lsda.write(output(path, run.files()), (
+        array for name, table in tables.items() for branch, rows in branches_of(name, table)
+        for array in arrays_of(branch, FORMS[name], rows, run)))
     return list(tables)
 
 
@@ -242,8 +241,8 @@ def branches_of(name, table):
             if len(rows := table.where(condition=number))]
 
 
-def write_branch(file, name, form, table, run):
-    """One branch: its metadata, and a directory of each state (dicts of arrays by state)."""
+def arrays_of(name, form, table, run):
+    """(folder, name, values) of one branch: its metadata, and a directory of each state."""
     rows = Rows(table, form.entity, run)
     states = {"time": rows.first("time")}
     states |= {key: rows.column(column) for key, column in form.columns.items() if column in table}
@@ -253,7 +252,7 @@ def write_branch(file, name, form, table, run):
     metadata = {"version": f"slideline {__version__}"[:10].ljust(10), "date": " " * 10,
                 "title": run.title[:80].ljust(80), **form.more(rows, states)}
     for key, value in metadata.items():
-        file.write(f"/{name}/metadata", key, value)
+        yield f"/{name}/metadata", key, value
     for k in range(len(states["time"])):
         for key, values in states.items():
-            file.write(f"/{name}/d{k + 1:06d}", key, values[k])
+            yield f"/{name}/d{k + 1:06d}", key, values[k]

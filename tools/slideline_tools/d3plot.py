@@ -15,6 +15,7 @@ import pathlib
 import numpy as np
 
 from slideline_tools import UserError
+from slideline_tools.effective_deck import part_titles
 from slideline_tools.files import output
 from slideline_tools.finished_run import Run
 
@@ -103,7 +104,7 @@ def ids(results, parts):
 
 def titles(run, parts):
     """Titles of the parts."""
-    known = run.part_titles()
+    known = part_titles(run.deck)
     names = b"".join(integers([part]) + ascii_text(known.get(int(part)) or f"part {part}", PART_TITLE)
                      for part in parts)
     return integers([PART_TITLES, len(parts)]) + names

@@ -6,7 +6,6 @@ import pathlib
 
 import numpy as np
 
-from slideline_tools.effective_deck import interface_titles, part_titles
 from slideline_tools.files import ENDINGS, TABLES, find_run, source
 from slideline_tools.histories import History, read_csv
 from slideline_tools.results import Results, read
@@ -38,11 +37,7 @@ class Run:
 
     @functools.cached_property
     def results(self) -> Results | None:
-        """The results file, open."""
-        return self.open_results()
-
-    def open_results(self) -> Results | None:
-        """The results file; UserError where it is damaged."""
+        """The results file, open; UserError where it is damaged."""
         return read(self.path(".vtkhdf")) if self.path(".vtkhdf").exists() else None
 
     @functools.cached_property
@@ -80,14 +75,6 @@ class Run:
     def title(self) -> str:
         """Title of the deck, '' where it is not known."""
         return self.results.run.get("title", "") if self.results else ""
-
-    def part_titles(self) -> dict[int, str]:
-        """part id -> heading of *PART, from the deck as run."""
-        return part_titles(self.deck)
-
-    def interface_titles(self) -> dict[int, str]:
-        """interface id -> title of *CONTACT_..._TITLE, from the deck as run."""
-        return interface_titles(self.deck)
 
 
 def whole_instants(table):

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Writer of LSDA files, the container of DYNA's binout: a tree of directories with named arrays."""
-import pathlib
 import struct
 
 import numpy as np
@@ -14,59 +13,31 @@ ENTRY = struct.Struct("<BQQ")         # type, offset of the record, number of va
 HEADER = bytes((8, 8, 8, 1, 1, 1, 0, 0))
 
 
-class Writer:
-    """Write arrays one after the other; the table of contents follows when it is closed.
+def write(path, arrays):
+    """Write (folder, name, values) one after the other, then the table of contents.
 
-        with Writer(path) as file:
-            file.write("/glstat/d000001", "time", 0.0)
+    Values are a number, a text or numbers: integers become 4-byte, reals 8-byte numbers, texts bytes.
     """
-
-    def __init__(self, path):
-        """Make the file, replacing one of that name."""
-        self._stream = open(pathlib.Path(path), "wb")
-        self._stream.write(HEADER + COMMAND.pack(COMMAND.size + 8, TABLE_OFFSET))
-        self._table_at = self._stream.tell()
-        self._stream.write(struct.pack("<Q", 0))
-        self._folder = None
-        self._entries = {}
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.close()
-
-    def write(self, folder, name, values):
-        """Write one array (a number, a text or numbers) as `folder`/`name`.
-
-        Integers become 4-byte, reals 8-byte numbers, texts bytes.
-        """
-        values = stored(values)
-        self._change_to(folder)
-        entry = (name, TYPES[values.dtype.str[1:]], self._stream.tell(), values.size)
-        label = bytes((entry[1], len(name))) + name.encode("ascii")
-        body = values.tobytes()
-        self._stream.write(COMMAND.pack(COMMAND.size + len(label) + len(body), DATA) + label + body)
-        self._entries.setdefault(folder, []).append(entry)
-
-    def _change_to(self, folder):
-        if folder != self._folder:
-            self._stream.write(cd_record(folder))
-            self._folder = folder
-
-    def close(self):
-        """Write the table of contents and close the file."""
-        if self._stream.closed:
-            return
-        start = self._stream.tell()
-        records = b"".join(cd_record(folder) + b"".join(map(variable_record, self._entries[folder]))
-                           for folder in sorted(self._entries))
+    entries, here = {}, None
+    with open(path, "wb") as stream:
+        stream.write(HEADER + COMMAND.pack(COMMAND.size + 8, TABLE_OFFSET))
+        table_at = stream.tell()
+        stream.write(struct.pack("<Q", 0))
+        for folder, name, values in arrays:
+            values = stored(values)
+            if folder != here:
+                stream.write(cd_record(folder))
+                here = folder
+            kind = TYPES[values.dtype.str[1:]]
+            entries.setdefault(folder, []).append((name, kind, stream.tell(), values.size))
+            body = bytes((kind, len(name))) + name.encode("ascii") + values.tobytes()
+            stream.write(COMMAND.pack(COMMAND.size + len(body), DATA) + body)
+        start = stream.tell()
+        records = b"".join(cd_record(folder) + b"".join(map(variable_record, entries[folder])) for folder in sorted(entries))
         end = COMMAND.pack(COMMAND.size + 8, END_TABLE) + struct.pack("<Q", 0)
-        self._stream.write(COMMAND.pack(COMMAND.size + len(records) + len(end), BEGIN_TABLE)
-                           + records + end)
-        self._stream.seek(self._table_at)
-        self._stream.write(struct.pack("<Q", start))
-        self._stream.close()
+        stream.write(COMMAND.pack(COMMAND.size + len(records) + len(end), BEGIN_TABLE) + records + end)
+        stream.seek(table_at)
+        stream.write(struct.pack("<Q", start))
 
 
 def stored(values):

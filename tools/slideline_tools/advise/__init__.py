@@ -5,13 +5,13 @@
     run, advice, notes = advise("results/collision")
 
 Every check says nothing unless the files of the run prove its point; its thresholds stand at the
-top of its module (bodies, touching, rubbing, stepping, outputs; doc/studies/simplify.md lists them).
+top of its module (bodies, touching, rubbing, running; doc/studies/simplify.md lists them).
 """
-from slideline_tools.advise import bodies, outputs, rubbing, stepping, touching
+from slideline_tools.advise import bodies, rubbing, running, touching
 from slideline_tools.advise.finished import Finished
 from slideline_tools.advise.report import Advice
 
-CHECKS = bodies.CHECKS + touching.CHECKS + rubbing.CHECKS + stepping.CHECKS + outputs.CHECKS
+CHECKS = bodies.CHECKS + touching.CHECKS + rubbing.CHECKS + running.CHECKS
 
 
 def advise(path) -> tuple[Finished, list[Advice], list[str]]:

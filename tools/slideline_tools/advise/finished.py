@@ -15,7 +15,7 @@ class Finished(Run):
     """One finished run.
 
     `ended`      whether it ended normally: the words that scripts look for at the end of a log
-    `seconds`    wall clock by phase, with `total`
+    `seconds`    wall clock by phase; `total` of the whole run
     `tables`     histories by name
     """
 
@@ -30,31 +30,18 @@ class Finished(Run):
         self.ended = "N o r m a l" in self.log
         timing = read_csv(self.path(".timing.csv"))
         self.seconds: dict[str, float] = dict(zip(timing["phase"].tolist(), timing["seconds"].tolist()))
-        if self.seconds.get("total", 0.0) <= 0.0:
+        self.total = self.seconds.get("total", 0.0)
+        if self.total <= 0.0:
             raise UserError(f"{self.path('.timing.csv')}: no total")
 
     @functools.cached_property
     def results(self) -> Results | None:
-        """The states, all of whose arrays are read at once; None without a readable file or with a single state."""
+        """The states; None without a readable file or with a single state."""
         try:
             results = read(self.path(".vtkhdf"))
         except UserError:
             return None
-        if len(results.times) < 2:
-            return None
-        _ = results.points, results.cells
-        for name in ("displacement", "velocity", "contact_force", "node_id"):
-            if name in results.point_fields:
-                results.point_field(name)
-        for name in ("plastic_strain", "mises", "part_id"):
-            if name in results.cell_fields:
-                results.cell_field(name)
-        return results
-
-    @property
-    def total(self) -> float:
-        """Seconds of the whole run."""
-        return self.seconds["total"]
+        return results if len(results.times) > 1 else None
 
     def seconds_of(self, phase: str) -> float:
         """Seconds of a phase; `contact` sums its three, `loop` is all that is paid per cycle."""

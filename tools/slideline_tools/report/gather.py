@@ -15,7 +15,7 @@ from slideline_tools.files import TABLES
 from slideline_tools.finished_run import Run
 from slideline_tools.histories import History
 from slideline_tools.program import find_program
-from slideline_tools.results import Results
+from slideline_tools.results import Results, read
 
 GOES_ON = "restart from the restart file"
 #: what the log tells where there are no results
@@ -76,7 +76,7 @@ class Gathered(Run):
             self.notes.append("No states: the run ended before it had written the first one."
                               if ".vtkhdf.part" in self.sizes else "No results file (.vtkhdf).")
             return None
-        results = self.attempt("No states: {}.", self.open_results)
+        results = self.attempt("No states: {}.", lambda: read(self.path(".vtkhdf")))
         if results is not None and not results.n_state:
             self.notes.append("The results file holds no state.")
         return results
