@@ -10,7 +10,6 @@ speed_accuracy.svg and the drawings of doc/theory/contact.md.
 import argparse
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
@@ -20,28 +19,23 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
+import slideline_tools  # noqa: E402
 from slideline_tools import cli  # noqa: E402
 from slideline_tools.contact_types import TYPES  # noqa: E402
-from slideline_tools.results import read  # noqa: E402
+from slideline_tools.decks import Deck, Grid, spaced  # noqa: E402
+from slideline_tools.draw.model import check_deck  # noqa: E402
+from slideline_tools.scenes.common import elastic, part, plane_strain  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PICTURES = ROOT / "doc/pictures"
 SLAVE, MASTER, INK = "#c8553d", "#33658a", "#333333"
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
 N_SLAVE, N_MASTER = 4, 5
-
-
-def run(program, deck, folder, *words):
-    done = subprocess.run([program, f"i={deck}", f"d={folder}", *words], capture_output=True,
-                          text=True)
-    if done.returncode:
-        sys.exit(done.stdout + done.stderr)
-    return folder / f"{deck.stem}.vtkhdf"
+plt.rcParams.update({"svg.hashsalt": "slideline", "axes.spines.top": False, "axes.spines.right": False})
 
 
 def save(figure, name):
     """An SVG that is the same whenever it is drawn."""
-    matplotlib.rcParams["svg.hashsalt"] = "slideline"
     figure.savefig(PICTURES / name, metadata={"Date": None}, bbox_inches="tight")
     plt.close(figure)
 
@@ -67,12 +61,6 @@ def tutorial_deck(folder):
     return path
 
 
-def node_set(deck, number):
-    """The nodes of one set of the tutorial's deck, in order."""
-    body = re.search(rf"\*SET_NODE_LIST\n{number},\n([\d, ]+)\n", deck.read_text()).group(1)
-    return [int(word) for word in body.split(",")]
-
-
 def draw_surface(axes, places, label, colour, side):
     """A surface with arrows in walking order."""
     for start, end in zip(places[:-1], places[1:]):
@@ -88,12 +76,10 @@ def draw_surface(axes, places, label, colour, side):
 def first_deck(program, folder):
     """Mesh and surfaces, and the pictures that the tutorial's commands make."""
     deck = tutorial_deck(folder)
-    path = run(program, deck, folder / "first")
-    results = read(path)
-    ids = results.point_field("node_id")[0].astype(int).tolist()
+    results, model = slideline_tools.run(deck, folder / "first", program=program).results, check_deck(deck, program)
     figure, axes = plt.subplots(figsize=(7.2, 4.0))
     points = draw_bodies(axes, results, {1: SLAVE, 2: MASTER}, 0.035)
-    for number, (x, y) in zip(ids, points):
+    for number, (x, y) in zip(model.node_ids, points):
         axes.annotate(str(number), (x, y), xytext=(4, 4 if number < 16 else -12),
                       textcoords="offset points", fontsize=8, color=INK)
     axes.plot(*points.T, "o", markersize=3, color=INK)
@@ -101,10 +87,8 @@ def first_deck(program, folder):
                                          SLAVE, 0.03),
                                         (3, "master: set 3 (20, 19 ... 16),\nplate on the left hand",
                                          MASTER, -0.02)):
-        places = np.array([points[ids.index(node)] for node in node_set(deck, number)])
-        draw_surface(axes, places, label, colour, side)
-    fixed = np.array([points[ids.index(node)] for node in node_set(deck, 1)])
-    axes.plot(*(fixed - [0.0, 0.006]).T, "^", color=INK, markersize=8)
+        draw_surface(axes, points[model.node_sets[number].nodes], label, colour, side)
+    axes.plot(*(points[model.node_sets[1].nodes] - [0.0, 0.006]).T, "^", color=INK, markersize=8)
     axes.annotate("", xy=(0.24, 0.235), xytext=(0.24, 0.275),
                   arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.6})
     axes.text(0.246, 0.255, "v0", color=INK)
@@ -114,9 +98,9 @@ def first_deck(program, folder):
     save(figure, "first_deck.svg")
     for words in (["draw", str(deck), "--program", str(program),
                    "--output", str(PICTURES / "first_model.png")],
-                  ["plot", str(path), "--field", "stress:yy", "--state", "0.006",
+                  ["plot", str(results.path), "--field", "stress:yy", "--state", "0.006",
                    "--output", str(PICTURES / "first_stress.png")],
-                  ["plot", str(path), "--history", "glstat:kinetic,internal,contact", "--history",
+                  ["plot", str(results.path), "--history", "glstat:kinetic,internal,contact", "--history",
                    "rcforc:fy@side=slave", "--output", str(PICTURES / "first_history.png")]):
         if cli.main(words):
             sys.exit("the picture could not be drawn")
@@ -132,28 +116,23 @@ def collision(program):
 # --- contact points of the seven formulations ------------------------------------------------
 
 def blocks_deck(folder):
-    """A block of four segments pressed by 0.001 into one of five: its forces at time zero are drawn."""
-    lines = ["*KEYWORD", "*TITLE", "uniform penetration", "*CONTROL_TERMINATION", "1.0e-6,",
-             "*PART", "slave", "1,1,1", "*PART", "master", "2,1,1", "*SECTION_SHELL", "1,13,1.0,4",
-             "*MAT_ELASTIC", "1,1000.0,1.0e6,0.3", "*NODE"]
-    sides = []
-    for first, n, low in ((1, N_SLAVE, -0.001), (101, N_MASTER, -0.3)):
-        for row in range(2):
-            lines += [f"{first + row * (n + 1) + k},{k / n!r},{low + 0.3 * row!r}"
-                      for k in range(n + 1)]
-        sides.append((first, n))
-    lines.append("*ELEMENT_SHELL")
-    for number, (first, n) in enumerate(sides, 1):
-        lines += [f"{first + k},{number},{first + k},{first + k + 1},{first + n + k + 2},"
-                  f"{first + n + k + 1}" for k in range(n)]
-    slave = ",".join(str(1 + k) for k in range(N_SLAVE + 1))
-    master = ",".join(str(101 + 2 * N_MASTER + 1 - k) for k in range(N_MASTER + 1))
-    lines += ["*SET_NODE_LIST", "1,", slave, "*SET_NODE_LIST", "2,", master,
-              "*CONTACT_2D_SLIDELINE", "-1,-2,1,2,1.0e5", "0.0,0.0,1",
-              "*DATABASE_BINARY_D3PLOT", "1.0e-6,", "*END", ""]
+    """A block of four segments pressed by 0.001 into one of five: its forces at time zero are drawn. Deck and surface nodes."""
+    slave = Grid(spaced((0.0, 1.0, N_SLAVE)), [-0.001, 0.299])
+    master = Grid(spaced((0.0, 1.0, N_MASTER)), [-0.3, 0.0], first_node=101, first_element=101)
+    deck = Deck("uniform penetration")
+    deck.keyword("CONTROL_TERMINATION").card("endtim", 1.0e-6)
+    deck.database(binary_d3plot=1.0e-6)
+    plane_strain(deck, 1, points=4)
+    elastic(deck, 1, rho=1000.0, young=1.0e6, poisson=0.3)
+    for number, name, grid, nodes in ((1, "slave", slave, slave.lower), (2, "master", master, master.upper)):
+        part(deck, number, name, 1, 1)
+        grid.write(deck, number)
+        deck.node_set(number, name, nodes)
+    deck.keyword("CONTACT_2D_SLIDELINE").card("surfa surfb ctype ngauss pen", -1, -2, 1, 2, 1.0e5)
+    deck.card("tbirth tdeath punit", 0.0, 0.0, 1)
     path = folder / "points.k"
-    path.write_text("\n".join(lines))
-    return path
+    path.write_text(deck.text())
+    return path, slave.lower, master.upper
 
 
 def points_of_type(kind):
@@ -173,25 +152,21 @@ def points_of_type(kind):
 
 def contact_points(program, folder):
     """A panel for each type: contact points, and the nodal forces of the program."""
-    deck = blocks_deck(folder)
+    deck, slave, master = blocks_deck(folder)
     n_row = len(TYPES) // 2 + 1  # the last panel is the key
     figure, panels = plt.subplots(n_row, 2, figsize=(9.0, 1.8 * n_row))
     lift = 0.12  # the bodies are drawn apart, so that both surfaces can be seen
     for kind, axes in zip(TYPES, panels.flat):
-        results = read(run(program, deck, folder / f"type_{kind}", f"ctype={kind}"))
-        ids = results.point_field("node_id")[0].astype(int)
+        results = slideline_tools.run(deck, folder / f"type_{kind}", program=program, ctype=kind).results
+        ids = results.point_field("node_id")[0]
         x = results.points[0][:, 0]
         force = results.point_field("contact_force")[0][:, 1]
         scale = 0.30 / (1.0e5 * 0.001 / N_SLAVE * 1.6)
-        for side, n, base, first in ((SLAVE, N_SLAVE, lift, 1),
-                                     (MASTER, N_MASTER, 0.0, 101 + N_MASTER + 1)):
-            sign = 1 if first == 1 else -1
-            lines = np.linspace(0, 1, n + 1)
-            axes.fill_between([0, 1], base, base + sign * 0.34, color=side, alpha=0.16, linewidth=0)
+        for side, nodes, base, up in ((SLAVE, slave, lift, 1), (MASTER, master, 0.0, -1)):
+            axes.fill_between([0, 1], base, base + up * 0.34, color=side, alpha=0.16, linewidth=0)
             axes.plot([0, 1], [base, base], color=side, linewidth=1.4)
-            axes.plot(lines, 0 * lines + base, "o", color=side, markersize=4)
-            for node in range(first, first + n + 1):
-                k = int(np.flatnonzero(ids == node)[0])
+            for k in np.flatnonzero(np.isin(ids, nodes)):
+                axes.plot(x[k], base, "o", color=side, markersize=4)
                 if abs(force[k]) > 1e-9:
                     axes.annotate("", xy=(x[k], base + scale * force[k]), xytext=(x[k], base),
                                   arrowprops={"arrowstyle": "-|>", "color": side, "linewidth": 1.6,
@@ -237,11 +212,10 @@ def bare(axes, title, low, high):
     axes.axis("off")
 
 
-def arrow(axes, start, end, colour=INK, text="", shift=(0.03, 0.0)):
-    axes.annotate("", xy=end, xytext=start, arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.3,
+def arrow(axes, start, end, text, shift=(0.03, 0.0)):
+    axes.annotate("", xy=end, xytext=start, arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.3,
                                                         "shrinkA": 0, "shrinkB": 0})
-    if text:
-        axes.text(end[0] + shift[0], end[1] + shift[1], text, fontsize=10, color=colour)
+    axes.text(end[0] + shift[0], end[1] + shift[1], text, fontsize=10, color=INK)
 
 
 def projection_figure():
@@ -258,8 +232,8 @@ def projection_figure():
     axes.plot(*np.array([x, projected]).T, ":", color=INK, linewidth=1.2)
     axes.text(*(x + [0.03, -0.07]), "x", fontsize=11, color=SLAVE)
     axes.text(*(0.5 * (x + projected) + [-0.24, -0.03]), r"$g < 0$", fontsize=10, color=INK)
-    arrow(axes, projected, projected + 0.3 * n, text=r"$n$")
-    arrow(axes, a, a + 0.3 * t, text=r"$t$", shift=(-0.02, 0.05))
+    arrow(axes, projected, projected + 0.3 * n, r"$n$")
+    arrow(axes, a, a + 0.3 * t, r"$t$", shift=(-0.02, 0.05))
     axes.text(*(projected + [0.03, 0.04]), r"$\xi$", fontsize=11, color=INK)
     bare(axes, "projection", (-0.1, -0.4), (1.15, 0.65))
     for axes, apex, title, text, where in (
@@ -339,8 +313,6 @@ def entry_figure():
         axes.set_yticks([0.0])
         axes.set_yticklabels(["0"])
         axes.set_ylim(-0.5, 0.3)
-        for side in ("top", "right"):
-            axes.spines[side].set_visible(False)
     panels[0].legend(fontsize=9, frameon=False)
     save(figure, "contact_entry.svg")
 
@@ -390,8 +362,6 @@ def energy_limit_figure():
     axes.set_ylabel("energy returned", fontsize=9)
     axes.set_xlim(0.0, 1.0)
     axes.set_ylim(0.0, 1.2)
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
     save(figure, "contact_energy_limit.svg")
 
 
@@ -413,8 +383,6 @@ def speed_accuracy_figure():
         axes.set_yticks([0.1, 0.3, 1.0], ["0.1", "0.3", "1"])
         axes.set_title(name, fontsize=10, loc="left", color=INK)
         axes.grid(True, linewidth=0.3, color="#bbbbbb")
-        for side in ("top", "right"):
-            axes.spines[side].set_visible(False)
     panels[0].set_ylabel("error over type 1")
     figure.text(0.5, -0.02, "lower left is better; filled: transmits a uniform pressure exactly", fontsize=9, ha="center", color=INK)
     figure.tight_layout()

@@ -9,8 +9,6 @@ import argparse
 import dataclasses
 import pathlib
 import re
-import subprocess
-import sys
 import tempfile
 
 import matplotlib
@@ -19,10 +17,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
+import slideline_tools  # noqa: E402
 from slideline_tools.fields import scalar_field  # noqa: E402
 from slideline_tools.mirrored import Mirrored  # noqa: E402
-from slideline_tools.plots import draw_field, deformed  # noqa: E402
-from slideline_tools.results import read  # noqa: E402
+from slideline_tools.plots import draw_field, window  # noqa: E402
 from slideline_tools.studies.common import save_small  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -73,33 +71,18 @@ SCENES = {
 }
 
 
-#: deck, field, axis along which the wave runs (0 x, 1 y), label, factor on values, largest value of the colours
+#: deck, time between states in s, field, axis along which the wave runs (0 x, 1 y), largest value of the colours
 DIAGRAMS = {
-    "hopkinson": ("input/hopkinson/hopkinson.k", "stress:yy", 1, "axial stress, MPa", 1e-6, 210.0),
-    "spall": ("doc/examples/plate_impact_spall.k", "pressure", 0, "pressure, GPa", 1e-9, 4.0),
+    "hopkinson": ("input/hopkinson/hopkinson.k", 2e-6, "stress:yy", 1, 210.0),
+    "spall": ("doc/examples/plate_impact_spall.k", 4e-9, "pressure", 0, 4.0),
 }
-#: time between their states, s
-STEPS = {"hopkinson": 2e-6, "spall": 4e-9}
 
 
 def run(program, scene, folder):
     """The results of a scene."""
-    done = subprocess.run([program, f"i={ROOT / scene.deck}", f"d={folder}", "jobid=x", "quiet=1", *scene.words],
-                          capture_output=True, text=True, check=False)
-    if done.returncode:
-        sys.exit(done.stdout + done.stderr)
-    results = read(folder / "x.vtkhdf")
+    given = dict(word.split("=") for word in scene.words)
+    results = slideline_tools.run(ROOT / scene.deck, folder, program=program, **given).results
     return Mirrored(results) if scene.mirror else results
-
-
-def window(results, scene, states):
-    """The box of all panels."""
-    if scene.box:
-        return scene.box
-    points = np.concatenate([deformed(results, state, scene.scale) for state in states])
-    low, high = points.min(axis=0), points.max(axis=0)
-    margin = 0.01 * max(high - low)
-    return low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin
 
 
 def draw(results, scene):
@@ -110,7 +93,7 @@ def draw(results, scene):
     field.values = factor * field.values
     states = [int(np.argmin(abs(results.times - time))) if time >= 0.0 else results.n_state - 1 for time in scene.times]
     limits = scene.limits or field.limits(states)
-    x0, x1, y0, y1 = window(results, scene, states)
+    x0, x1, y0, y1 = window(results, states, scene.scale, scene.box)
     rows, columns = (len(states), 1) if scene.stacked else (1, len(states))
     width = (scene.inches - 0.9) / columns
     figure, panels = plt.subplots(rows, columns, figsize=(scene.inches, max(rows * width * (y1 - y0) / (x1 - x0), 1.6) + 0.1), dpi=130,
@@ -129,8 +112,9 @@ def draw(results, scene):
 
 def diagram(program, name, folder):
     """A field over place and time: waves of one row of elements along x, or of those at the axis along y."""
-    deck, field, along, label, factor, limit = DIAGRAMS[name]
-    text = re.sub(r"(\*DATABASE_BINARY_D3PLOT\n.*\n) *\S+", lambda found: f"{found[1]}{STEPS[name]:10.1E}",
+    deck, step, field, along, limit = DIAGRAMS[name]
+    label, factor = LABELS[field]
+    text = re.sub(r"(\*DATABASE_BINARY_D3PLOT\n.*\n) *\S+", lambda found: f"{found[1]}{step:10.1E}",
                   (ROOT / deck).read_text(encoding="ascii"))
     (folder / "x.k").write_text(text, encoding="ascii")
     results = run(program, Scene(folder / "x.k", field, ()), folder)
@@ -149,13 +133,6 @@ def diagram(program, name, folder):
     return figure
 
 
-def draw_named(program, name, folder):
-    """The figure of that name."""
-    if name in DIAGRAMS:
-        return diagram(program, name, folder)
-    return draw(run(program, SCENES[name], folder), SCENES[name])
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default=str(ROOT / "build/release/slideline"))
@@ -164,7 +141,9 @@ def main():
     options = parser.parse_args()
     for name in options.names or names:
         with tempfile.TemporaryDirectory() as folder:
-            figure = draw_named(options.program, name, pathlib.Path(folder))
+            path = pathlib.Path(folder)
+            figure = (diagram(options.program, name, path) if name in DIAGRAMS else
+                      draw(run(options.program, SCENES[name], path), SCENES[name]))
             save_small(figure, PICTURES / f"{'' if name == 'impact' else 'gallery_'}{name}.png", colours=96)
         print(name, flush=True)
 

@@ -4,6 +4,7 @@
     keyword_pages.py    puts the fields of src/deck/schema into doc/keywords.md, which has their meanings
 """
 import dataclasses
+import itertools
 import re
 import textwrap
 
@@ -255,18 +256,12 @@ def index_page(keywords, shown):
              "One page for each keyword: its cards, what each field does here, and a deck that runs "
              "in a moment. [How lines and fields are read](../keywords.md#lines) and what is ignored "
              "or refused by name stands on the [page with all keywords](../keywords.md).", ""]
-    group = None
-    for keyword in keywords:
-        if keyword.group != group:
-            group = keyword.group
-            lines += [f"## {group}", "", "| keyword | example |", "|---|---|"]
-            lines_of_group = len(lines)
-        titles = "; ".join(example.title for example in shown[keyword.name])
-        lines.append(f"| [*{keyword.name}]({keyword.file}) | {titles} |")
-        following = keywords.index(keyword) + 1
-        if following == len(keywords) or keywords[following].group != group:
-            assert len(lines) > lines_of_group
-            lines.append("")
+    for group, some in itertools.groupby(keywords, key=lambda keyword: keyword.group):
+        lines += [f"## {group}", "", "| keyword | example |", "|---|---|"]
+        for keyword in some:
+            titles = "; ".join(example.title for example in shown[keyword.name])
+            lines.append(f"| [*{keyword.name}]({keyword.file}) | {titles} |")
+        lines.append("")
     return "\n".join(lines)
 
 

@@ -28,10 +28,6 @@ PART_TITLES = 90001              # kind of the block of part titles
 FILE_LIMIT = 1 << 30
 #: MAXINT is minus (points through the thickness plus this) where states end with a deletion table of elements (MDLOPT 2)
 DELETION_TABLE = 10000
-#: words of the header, numbered from 1
-WORDS = {"file_type": 12, "version": 15, "ndim": 16, "numnp": 17, "icode": 18, "nglbv": 19, "it": 20, "iu": 21,
-         "iv": 22, "ia": 23, "nel4": 32, "nummat4": 33, "nv2d": 34, "maxint": 37, "narbs": 40, "ioshl1": 44,
-         "ioshl2": 45, "ioshl3": 46, "ioshl4": 47, "nmmat": 52}
 
 
 def write_d3plot(run, path, file_limit=FILE_LIMIT):
@@ -73,18 +69,19 @@ def geometry(run, parts):
 
 
 def header(results, parts, title):
-    """The 64 words that say what follows."""
-    words = np.zeros(N_HEADER, dtype="<i4")
-    values = {"file_type": 1, "ndim": 4, "numnp": results.n_node, "icode": 6, "nglbv": 6 + 7 * len(parts),
-              "it": 0, "iu": 1, "iv": 1, "ia": 0, "nel4": results.n_cell, "nummat4": len(parts),
-              "nv2d": 7 * N_POINT, "maxint": -(DELETION_TABLE + N_POINT) if erodes(results) else N_POINT,
-              "narbs": N_ID_HEADER + results.n_node + results.n_cell + 3 * len(parts),
-              "ioshl1": 1000, "ioshl2": 1000, "ioshl3": 999, "ioshl4": 999, "nmmat": len(parts)}
-    for name, value in values.items():
-        words[WORDS[name] - 1] = value
-    words[:TITLE_WORDS] = np.frombuffer(ascii_text(title, 4 * TITLE_WORDS), dtype="<i4")
-    words[WORDS["version"] - 1] = np.array([971.0], dtype="<f4").view("<i4")[0]
-    return words.tobytes()
+    """The 64 words that say what follows; those of it and ia are 0."""
+    words = np.zeros(N_HEADER + 1, dtype="<i4")  # numbered from 1
+    words[1:TITLE_WORDS + 1] = np.frombuffer(ascii_text(title, 4 * TITLE_WORDS), dtype="<i4")
+    maxint = -(DELETION_TABLE + N_POINT) if erodes(results) else N_POINT
+    narbs = N_ID_HEADER + results.n_node + results.n_cell + 3 * len(parts)
+    version = np.array([971.0], dtype="<f4").view("<i4")[0]
+    for number, _, value in (
+            (12, "file type", 1), (15, "version", version), (16, "ndim", 4), (17, "numnp", results.n_node), (18, "icode", 6),
+            (19, "nglbv", 6 + 7 * len(parts)), (21, "iu", 1), (22, "iv", 1), (32, "nel4", results.n_cell),
+            (33, "nummat4", len(parts)), (34, "nv2d", 7 * N_POINT), (37, "maxint", maxint), (40, "narbs", narbs),
+            (44, "ioshl1", 1000), (45, "ioshl2", 1000), (46, "ioshl3", 999), (47, "ioshl4", 999), (52, "nmmat", len(parts))):
+        words[number] = value
+    return words[1:].tobytes()
 
 
 def erodes(results):
