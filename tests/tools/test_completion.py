@@ -41,7 +41,7 @@ def test_commands_and_options(complete):
 
 @pytest.mark.parametrize("words, offered", [
     (["make-deck", "h"], {"hertz"}),
-    (["make-deck", "symmetric_plate", "--hourglass", "s"], {"stiffness"}),
+    (["make-deck", "patch", "--surfaces", "t"], {"tied"}),
     (["make-deck", "hertz", "-o", "x", "--l"], {"--level"}),
     (["plot", "x.vtkhdf", "--field", "plas"], {"plastic_strain"}),
     (["draw", "x", "--show", ""], set(pictures.WHAT)),

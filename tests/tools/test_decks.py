@@ -242,13 +242,6 @@ def test_meshes_of_the_patch(mesh):
     assert even == (mesh != "7/5")
 
 
-def test_hourglass_choice():
-    given = Model(scenes.symmetric_plate(8, 4)).parameters
-    assert (given["ihq"], given["qh"]) == (4, 0.05)
-    given = Model(scenes.symmetric_plate(8, 4, hourglass="viscous", coefficient=0.07)).parameters
-    assert (given["ihq"], given["qh"]) == (1, 0.07)
-
-
 @pytest.mark.parametrize("n_x, n_y", [(12, 4), (8, 3), (0, 4)])
 def test_plate_mesh_that_cannot_be(n_x, n_y):
     with pytest.raises(ValueError):

@@ -129,15 +129,14 @@ def numbers(model, nodes):
 
 def test_mesh_and_parts(model):
     assert model.title == "ring and block"
-    assert {number: model.points[model.index(number)].tolist() for number in MESH} == {
+    assert {number: model.points[model.indices([number])[0]].tolist() for number in MESH} == {
         number: pytest.approx(list(point)) for number, point in MESH.items()}
     corner = model.points[model.cells]
     first, second = corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1]
     assert np.all(first[:, 0] * second[:, 1] > first[:, 1] * second[:, 0])
     assert {part.id: (part.title, part.n_element, part.law) for part in model.parts.values()} == {
         1: ("ring", 8, "elastic"), 2: ("block", 3, "rigid")}
-    assert model.parts[2].is_rigid and model.parts[2].turn_held
-    assert model.parts[2].held == (True, False)
+    assert model.parts[2].is_rigid and model.parts[2].held == ("x", "turn")
 
 
 def test_sets_and_conditions(model):
@@ -167,8 +166,8 @@ def test_loads_and_motions(model):
 
 def test_initial_velocity(model):
     """Translation and spin 4 about (1.5, 1.5) for the ring alone; nodes that are held stand still."""
-    np.testing.assert_allclose(model.velocity[model.index(85)], [1.0 - 4.0 * 1.5, 4.0 * 1.5])
-    np.testing.assert_allclose(model.velocity[model.index(100)], 0.0)
+    np.testing.assert_allclose(model.velocity[model.indices([85])[0]], [1.0 - 4.0 * 1.5, 4.0 * 1.5])
+    np.testing.assert_allclose(model.velocity[model.indices([100])[0]], 0.0)
     np.testing.assert_allclose(model.velocity[model.cells[model.cell_parts == 2]], 0.0)
 
 
@@ -181,7 +180,7 @@ def test_velocity_of_a_rigid_body(tmp_path, slideline):
         return resolve(tmp_path / "deck.k", slideline)
 
     model = read_model(text.replace("*END\n", "*INITIAL_VELOCITY_NODE\n         4       9.0       9.0\n*END\n"))
-    np.testing.assert_allclose(model.velocity[model.index(4)], [1.0 - 10.0 * 0.5, 10.0 * 0.5])
+    np.testing.assert_allclose(model.velocity[model.indices([4])[0]], [1.0 - 10.0 * 0.5, 10.0 * 0.5])
     np.testing.assert_allclose(model.velocity.mean(axis=0), [1.0, 0.0], atol=1e-12)
     rigid = "         1    1000.0    2.1E11       0.3\n"
     held = read_model(text.replace(rigid, rigid + "       1.0       1.0       7.0\n"))

@@ -239,7 +239,7 @@ def test_run_before_its_first_state(collision, tmp_path):
 
 def test_run_without_plot_states_or_contact(tmp_path, slideline):
     deck = tmp_path / "plate.k"
-    text = scenes.symmetric_plate(8, 4, False, "viscous", None)
+    text = scenes.symmetric_plate(8, 4)
     deck.write_text(re.sub(r"\*DATABASE_BINARY_D3PLOT\n(\$.*\n)*.*\n", "", text))
     folder = run_program(slideline, deck, tmp_path / "run", "endtim=1e-4")
     page = read_page(write_report(folder, tmp_path / "r.html"))

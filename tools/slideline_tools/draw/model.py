@@ -44,7 +44,7 @@ def labelled(kind: str, one) -> str:
 
 @dataclasses.dataclass
 class Part:
-    """A part with the name of its material law; `held` and `turn_held` of a rigid body alone."""
+    """A part with the name of its material law; `held`, of a rigid body alone: which of x, y and turn."""
 
     id: int
     title: str
@@ -56,8 +56,7 @@ class Part:
     poisson: float = 0.0
     n_element: int = 0
     is_rigid: bool = False
-    held: tuple[bool, bool] = (False, False)
-    turn_held: bool = False
+    held: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
@@ -133,8 +132,7 @@ class Model:
     def __init__(self, start: Results, warnings: typing.Iterable[str] = ()) -> None:
         """`start`: the file of the state at time zero; `warnings`: what the program said of the deck."""
         with start.reading("the model") as stream:
-            tables = {name: {column: values(array) for column, array in sorted(table.items(), key=order_of)}
-                    for name, table in stream["model"].items()}
+            tables = {name: {column: values(array) for column, array in table.items()} for name, table in stream["model"].items()}
         self.title = tables["deck"]["title"][0]
         self.is_axisymmetric = bool(tables["deck"]["axisymmetric"][0])
         self.warnings = list(warnings)
@@ -159,8 +157,8 @@ class Model:
                       for row in rows(tables, "walls")]
         self.history_nodes = self.indices(tables.get("history_nodes", {}).get("node", ())).tolist()
         self.fixed = np.zeros((len(self.points), 2), dtype=bool)
-        for row in rows(tables, "fixed"):
-            self.fixed[self.index(row["node"]), row["direction"] - 1] = True
+        if fixed := tables.get("fixed"):
+            self.fixed[self.indices(fixed["node"]), fixed["direction"] - 1] = True
         self.arrows = self._arrows(tables)
         self.not_drawn = [words for name, words in NOT_DRAWN.items() if name in tables]
 
@@ -168,10 +166,6 @@ class Model:
         """Indices of nodes by their numbers."""
         found = np.asarray(nodes, dtype=int)
         return self._order[np.searchsorted(self.node_ids, found, sorter=self._order)] if found.size else found
-
-    def index(self, node: int) -> int:
-        """Index of one node by its number."""
-        return int(self.indices([node])[0])
 
     def centre(self, part: int) -> np.ndarray:
         """Middle of the area of a part (its centre of mass, with one density)."""
@@ -185,36 +179,33 @@ class Model:
         ordinates = self.curves[curve][:, 1]
         return scale * float(ordinates[np.argmax(np.abs(ordinates))])
 
-    def _part(self, row: dict, held: dict | None) -> Part:
+    def _part(self, row: dict, body: dict | None) -> Part:
         """One part, and how it is held where it is rigid."""
-        body = held or {"held_x": 0, "held_y": 0, "held_turn": 0}
-        return Part(**row, n_element=int(np.sum(self.cell_parts == row["id"])), is_rigid=held is not None,
-                    held=(bool(body["held_x"]), bool(body["held_y"])), turn_held=bool(body["held_turn"]))
+        return Part(**row, n_element=int(np.sum(self.cell_parts == row["id"])), is_rigid=body is not None,
+                    held=tuple(name for name in ("x", "y", "turn") if body and body[f"held_{name}"]))
 
     def _arrows(self, tables: dict) -> list[Arrows]:
         """Prescribed motions and loads; those with one curve, factor and direction together."""
         found = []
         for name, kind, column in (("motions", "motion", "node"), ("body_motions", "motion", "part"),
                                    ("nodal_loads", "load", "node"), ("rigid_loads", "load", "part")):
-            for (direction, *quantity, curve, scale), members in groups(tables.get(name, {}), column):
-                size = self.peak(curve, scale)
+            for (direction, *quantity, curve, scale), members in groups(tables, name, column):
+                size, numbers = self.peak(curve, scale), [number for number, in members]
                 what = f"{QUANTITIES[quantity[0]]} of" if quantity else "load on"
-                on = (f"part {', '.join(map(str, members))}" if column == "part" else
-                      f"{len(members)} nodes" if len(members) > 1 else f"node {members[0]}")
+                on = (f"part {', '.join(map(str, numbers))}" if column == "part" else
+                      f"{len(numbers)} nodes" if len(numbers) > 1 else f"node {numbers[0]}")
                 label = (f"{what} {on} in {DIRECTIONS[direction]}, curve {curve}, peak {size:.4g}"
-                         + (" on each" if kind == "load" and len(members) > 1 else ""))
-                places = (self.points[self.indices(members)] if column == "node"
-                          else np.array([self.centre(part) for part in members]))
+                         + (" on each" if kind == "load" and len(numbers) > 1 else ""))
+                places = (self.points[self.indices(numbers)] if column == "node"
+                          else np.array([self.centre(part) for part in numbers]))
                 found.append(Arrows(kind, label, places, along(direction, size, len(places))))
-        edges = dict(tables.get("pressures", {"first": (), "second": ()}))
-        edges["edge"] = list(zip(edges.pop("first"), edges.pop("second")))
-        for (curve, scale), pairs in groups(edges, "edge"):
+        for (curve, scale), pairs in groups(tables, "pressures", "first", "second"):
             size = self.peak(curve, scale)
             segments = self.indices(np.ravel(pairs)).reshape(-1, 2)
             label = f"pressure on {counted(len(pairs), 'segment')}, curve {curve}, peak {size:.4g}"
             found.append(Arrows("pressure", label, self.points[segments].mean(axis=1),
                                 -size * Surface(segments).normals(self.points)))
-        for (direction, curve, scale), _ in groups(tables.get("body_loads", {})):
+        for (direction, curve, scale), _ in groups(tables, "body_loads"):
             size = -self.peak(curve, scale)  # bodies feel minus the base acceleration
             label = f"body load in {DIRECTIONS[direction]}, curve {curve}, acceleration {size:.4g}"
             middle = 0.5 * (self.points.min(axis=0) + self.points.max(axis=0))
@@ -225,15 +216,6 @@ class Model:
                      f"({counted(int(moving.sum()), 'node')})")
             found.append(Arrows("velocity", label, self.points[moving], self.velocity[moving]))
         return found
-
-
-#: the columns that tell motions and loads apart, in the order in which `_arrows` takes them
-ORDER = ("direction", "kind", "curve", "scale")
-
-
-def order_of(item: tuple[str, typing.Any]) -> int:
-    """Where a column stands among others."""
-    return ORDER.index(item[0]) if item[0] in ORDER else -1
 
 
 def values(array: h5py.Dataset) -> typing.Any:
@@ -259,13 +241,13 @@ def pieces(tables: dict, table: str, *counts: str) -> list[np.ndarray]:
     return np.split(tables[table].get("node", np.zeros(0, dtype=int)), np.cumsum(each)[:-1])
 
 
-def groups(columns: dict[str, list], member: str = "") -> list[tuple[tuple, list]]:
-    """(values, members) of the rows of a table: those that differ in the column `member` alone together."""
+def groups(tables: dict, table: str, *members: str) -> list[tuple[tuple, list]]:
+    """(values, members) of the rows of a table: direction, kind, curve and scale, as far as it has them, and what those rows have in
+    the columns `members` that are alike in these."""
     found: dict[tuple, list] = {}
-    others = [name for name in columns if name != member]
-    for row in zip(*(columns[name] for name in columns)):
-        values = dict(zip(columns, row))
-        found.setdefault(tuple(values[name] for name in others), []).append(values.get(member))
+    for row in rows(tables, table):
+        values = tuple(row[name] for name in ("direction", "kind", "curve", "scale") if name in row)
+        found.setdefault(values, []).append([row[name] for name in members])
     return list(found.items())
 
 

@@ -127,9 +127,7 @@ def part_words(part) -> str:
     """A part for the legend: elements, law, and how a rigid body is held."""
     words = f"{part.label}: {counted(part.n_element, 'element')}, {part.law}"
     if part.is_rigid:
-        held = [name for name, is_held in (("x", part.held[0]), ("y", part.held[1]),
-                                           ("turn", part.turn_held)) if is_held]
-        words += ", held: " + ", ".join(held) if held else ", free"
+        words += ", held: " + ", ".join(part.held) if part.held else ", free"
     return words
 
 

@@ -6,24 +6,20 @@ from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (elastic, energies_on, part, perfectly_plastic,
                                            plane_strain)
 
-HOURGLASS_FORMS = {"viscous": (1, 0.1), "stiffness": (4, 0.05)}
-
 
 def symmetric_plate_grid(n_x, n_y):
     """Half plate of 8 m x 1 m."""
     return Grid(spaced((0.0, 8.0, n_x)), spaced((0.0, 1.0, n_y)))
 
 
-def symmetric_plate(n_x=8, n_y=4, elastoplastic=False, hourglass="stiffness", coefficient=None):
+def symmetric_plate(n_x=8, n_y=4, elastoplastic=False):
     """A plate on two pins under a sudden upward load (after Flanagan and Belytschko 1981).
 
     `n_x` must be a multiple of 8 and `n_y` even, so that x = 7 m is a grid line and there is a
-    node at mid-height. `hourglass` is 'viscous' or 'stiffness'; `coefficient` its coefficient.
+    node at mid-height.
     """
     if n_x < 8 or n_x % 8 or n_y < 2 or n_y % 2:
         raise ValueError("symmetric_plate: nx must be a multiple of 8 and ny even")
-    form, usual = HOURGLASS_FORMS[hourglass]
-    coefficient = usual if coefficient is None else coefficient
     grid = symmetric_plate_grid(n_x, n_y)
     law = "elastic-plastic" if elastoplastic else "elastic"
     deck = Deck(f"symmetric plate {n_x} x {n_y} {law}", [
@@ -44,8 +40,8 @@ def symmetric_plate(n_x=8, n_y=4, elastoplastic=False, hourglass="stiffness", co
     deck.block("The numbers to play with.")
     deck.parameters(
         ("load", 80.0e3, "load on the upper edge in N/m, upward"),
-        ("ihq", form, "hourglass control: 1 viscous form, 4 stiffness form"),
-        ("qh", coefficient, "hourglass coefficient"),
+        ("ihq", 4, "hourglass control: 1 viscous form, 4 stiffness form"),
+        ("qh", 0.05, "hourglass coefficient"),
         ("endtim", 0.6, "end time in s"),
         ("dthist", 1.0e-3, "time between the rows of the histories in s"),
         ("dtplot", 2.0e-2, "time between the states for pictures in s"))
