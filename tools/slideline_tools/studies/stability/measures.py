@@ -7,8 +7,8 @@ import numpy as np
 
 from slideline_tools.histories import energy_made, read_csv
 
-STABLE, LIMITED, LOCKED, CHATTERING, PENETRATING, BLOWN_UP = range(6)
-VERDICTS = ("stable", "limited", "locked", "chattering", "penetrating", "blown up")
+VERDICTS = STABLE, LIMITED, LOCKED, CHATTERING, PENETRATING, BLOWN_UP = (
+    "stable", "limited", "locked", "chattering", "penetrating", "blown up")
 
 ENERGY_DRIFT = 0.05     # of the largest energy: unaccounted for
 ENERGY_CREATED = 0.05   # of the largest energy: made by the contact forces
@@ -82,4 +82,4 @@ def measure_cell(folder, jobid, scene):
     cut = cut_share((folder / f"{jobid}.log").read_text(encoding="utf-8"))
     if verdict == STABLE and cut > CUT_SHARE:
         verdict = LIMITED
-    return {**measures, "verdict": VERDICTS[verdict], "cut": cut}
+    return {**measures, "verdict": verdict, "cut": cut}

@@ -38,7 +38,7 @@ def draw_panel(axes, rows, ctype):
     """One map: cells by verdict, and the limits."""
     mine = rows[rows["type"] == ctype]
     verdicts = cells_of(mine).pivot(index="step", columns="decade", values="verdict").map(
-        lambda verdict: VERDICTS.index(verdict) if verdict == verdict else np.nan)
+        dict(zip(VERDICTS, range(len(VERDICTS)))).get)
     decades, steps = verdicts.columns.to_numpy(), verdicts.index.to_numpy()
     count = int(np.sum(decades < NO_COMPLIANCE))
     half = 0.5 * (decades[1] - decades[0]) if count > 1 else 0.5
@@ -131,7 +131,7 @@ def verdict_table(table):
 def good_penalties(table):
     """Smallest and largest penalty of (scene, type) with all cells below the limit stable."""
     cells = below(table)
-    stable = cells["verdict"] == VERDICTS[STABLE]
+    stable = cells["verdict"] == STABLE
     good = stable.groupby([cells[name] for name in [*CELL, "decade"]]).all().reset_index()
     return good.groupby(CELL)[["decade", "verdict"]].apply(
         lambda rows: range_text(rows.loc[rows["verdict"], "decade"]))
@@ -147,7 +147,7 @@ def range_text(decades):
 def depth_table(table):
     """Deepest slave node of the blocks, over the way, in cells that do not blow up."""
     cells = below(table)
-    cells = cells[(cells["scene"] == "block") & (cells["verdict"] != VERDICTS[BLOWN_UP])]
+    cells = cells[(cells["scene"] == "block") & (cells["verdict"] != BLOWN_UP)]
     depths = cells["depth"] / SCENES["block"].approach
     found = depths.groupby([cells["type"], cells["decade"]]).max().map("{:.2f}".format)
     table = found.unstack(fill_value="").reindex(in_order(found.index.levels[0]))
@@ -157,7 +157,7 @@ def depth_table(table):
 def page(table, doc):
     """DOC/studies/stability.md."""
     cells = below(table[table["type"] != IMPLICIT])
-    bad = cells["verdict"].isin([VERDICTS[BLOWN_UP], VERDICTS[CHATTERING]])
+    bad = cells["verdict"].isin([BLOWN_UP, CHATTERING])
     write_page(
         doc, "stability", "# Where each type is stable", "![Stability maps](../pictures/stability.png)",
         "## Limit of the program over the smaller of those by eigenvalues", limit_table(table),

@@ -17,8 +17,7 @@ from slideline_tools.studies.stability import measures
 from slideline_tools.studies.stability.page import NO_COMPLIANCE, chart, page
 from slideline_tools.studies.stability.scenes import SCENES
 
-DECADES = np.arange(-2.0, 4.01, 0.5)  # log10 of penalty over K L/A
-QUICK_DECADES = np.arange(-2.0, 4.01, 2.0)
+DECADES = np.arange(-2.0, 4.01, 0.5)  # log10 of penalty over K L/A; the quick study has those that are a multiple of 2
 STEPS = (0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 1.0, 1.2, 1.5)  # over L/c
 QUICK_STEPS = (0.2, 0.7, 1.2)
 IMPLICIT_STEPS = (*STEPS[:6], 0.995, *STEPS[7:])  # below L/c, where elements themselves are stable
@@ -28,9 +27,7 @@ NO_CURVE = 1.0e3     # s: a constant step that no element allows
 RULE = "*CONTROL_CONTACT\n\n0,0,0,0,0,0,2\n*CONTROL_ENERGY"  # ECDT 2: the log tells the limit
 LIMIT_TIME = 1.0e-9  # s: one cycle
 PATIENCE = 120.0     # s for a run
-IN_LOG = {"penalty": r"per slave node = (\S+)",
-          "element_limit": r"smallest L/c of the elements (\S+)",
-          "joint": r"stable step of elements and contact springs (\S+)"}
+IN_LOG = (r"per slave node = (\S+)", r"smallest L/c of the elements (\S+)", r"stable step of elements and contact springs (\S+)")
 
 
 def jobs(options):
@@ -41,7 +38,9 @@ def jobs(options):
     for name, ctype in itertools.product(names, options.types):
         scene, is_implicit = SCENES[name], ctype == IMPLICIT
         deck = scene.deck(7 if is_implicit else ctype)
-        for decade in decades_of(is_implicit, options.quick):
+        steps = ((QUICK_IMPLICIT_STEPS if is_implicit else QUICK_STEPS) if options.quick else
+                 IMPLICIT_STEPS if is_implicit else STEPS)
+        for decade in (*DECADES[::4 if options.quick else 1], *[NO_COMPLIANCE] * is_implicit):
             words = (*penalty_words(ctype, decade), f"dt={NO_CURVE:g}", "ncpu=1",
                      *scene.options)
             stem = f"{name}_type_{ctype}_pen_" + (
@@ -55,21 +54,8 @@ def jobs(options):
             listed += [Job(f"{stem}_dt_{step:g}", deck, name,
                            (*words, f"tssfac={step:g}", f"endtim={scene.end:g}"),
                            {**labels, "kind": "map", "step": step}, cost=0.2 / step, limit=PATIENCE)
-                       for step in steps_of(is_implicit, options.quick)]
+                       for step in steps]
     return listed
-
-
-def decades_of(is_implicit, quick):
-    """The penalties; the last of implicit penalty has no compliance."""
-    decades = QUICK_DECADES if quick else DECADES
-    return (*decades, NO_COMPLIANCE) if is_implicit else decades
-
-
-def steps_of(is_implicit, quick):
-    """The steps over L/c."""
-    if is_implicit:
-        return QUICK_IMPLICIT_STEPS if quick else IMPLICIT_STEPS
-    return QUICK_STEPS if quick else STEPS
 
 
 def penalty_words(ctype, decade):
@@ -85,17 +71,15 @@ def measure(job, folder):
     if job.labels["kind"] == "map":
         return measures.measure_cell(folder, job.jobid, SCENES[job.labels["scene"]])
     log = (folder / f"{job.jobid}.log").read_text(encoding="utf-8")
-    found = {name: re.search(pattern, log) for name, pattern in IN_LOG.items()}
-    if not all(found.values()):
+    found = [re.search(pattern, log) for pattern in IN_LOG]
+    if not all(found):
         raise UserError("no limits in the log")
-    reported = {name: float(match.group(1)) for name, match in found.items()}
-    return {"penalty": reported["penalty"], "element_limit": reported["element_limit"],
-            "program_limit": reported["joint"] / reported["element_limit"]}
+    penalty, element_limit, joint = (float(match[1]) for match in found)
+    return {"penalty": penalty, "element_limit": element_limit, "program_limit": joint / element_limit}
 
 
-def derive(table, folder):
+def derive(table, _folder):
     """With the limits by eigenvalue over L/c, and which cells lie below the program's limit."""
-    del folder
     return with_below(with_limits(table))
 
 
