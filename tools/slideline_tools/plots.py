@@ -24,7 +24,7 @@ elif not os.environ.get("MPLBACKEND"):
 
 STYLE = {
     "figure.dpi": 150, "savefig.dpi": 150, "font.size": 9, "axes.titlesize": 9,
-    "axes.grid": False, "legend.framealpha": 0.85, "legend.edgecolor": "none",
+    "axes.grid": False, "grid.linewidth": 0.3, "grid.color": "#bbbbbb", "legend.framealpha": 0.85, "legend.edgecolor": "none",
     "lines.linewidth": 1.2, "axes.spines.top": False, "axes.spines.right": False,
     "axes.formatter.limits": (-3, 4), "axes.formatter.use_mathtext": True, "legend.fontsize": 8,
 }
@@ -252,7 +252,7 @@ def draw_history(axes, results, request):
             count += 1
     axes.set_xlabel("time")
     axes.margins(x=0.0)
-    axes.grid(True, linewidth=0.3, color="#bbbbbb")
+    axes.grid(True)
     if count > 3:
         axes.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.02, 0.99), columnspacing=1.0,
                     handlelength=1.5, borderaxespad=0.0)
@@ -299,7 +299,7 @@ def contact_figure(results, states=("-1",)):
             axes.set_xlabel("arc length s along the slave surface")
             axes.set_ylabel("contact pressure")
             axes.set_ylim(0.0, 1.08 * axes.dataLim.ymax or 1.0)
-            axes.grid(True, linewidth=0.3, color="#bbbbbb")
+            axes.grid(True)
             axes.legend()
     return figure
 

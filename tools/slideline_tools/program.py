@@ -170,38 +170,24 @@ def failure(outcome: Outcome) -> str:
     return f"{outcome.folder / outcome.job}: {words}: {said}{hint and hint + ' of what the command line knows'}"
 
 
-@dataclasses.dataclass(repr=False)
-class Sweep:
-    """The runs of a sweep in the order of their values; those that failed too."""
+class Sweep(list[Outcome]):
+    """The runs of a sweep of `deck` in the order of their values; those that failed too."""
 
-    deck: pathlib.Path
-    runs: list[Outcome]
+    def __init__(self, deck: pathlib.Path, runs: typing.Iterable[Outcome]) -> None:
+        super().__init__(runs)
+        self.deck = deck
 
     def __repr__(self) -> str:
-        well = sum(outcome.ended_well for outcome in self.runs)
-        names = ", ".join(self.runs[0].parameters) if self.runs else ""
-        return one_line(f"Sweep of {self.deck.name} over {names}: {len(self.runs)} runs, {well} ended well")
-
-    def __len__(self) -> int:
-        return len(self.runs)
-
-    def __iter__(self) -> typing.Iterator[Outcome]:
-        return iter(self.runs)
-
-    def __getitem__(self, number: int) -> Outcome:
-        return self.runs[number]
-
-    def table(self, measure: typing.Callable[[Outcome], typing.Mapping[str, typing.Any]]
-              ) -> list[dict[str, typing.Any]]:
-        """A row for each run: its values, its exit status and, where it ended well, what `measure` says of it."""
-        return [{**outcome.parameters, "status": outcome.status,
-                 **(measure(outcome) if outcome.ended_well else {})} for outcome in self.runs]
+        well = sum(outcome.ended_well for outcome in self)
+        names = ", ".join(self[0].parameters) if self else ""
+        return one_line(f"Sweep of {self.deck.name} over {names}: {len(self)} runs, {well} ended well")
 
     def frame(self, measure: typing.Callable[[Outcome], typing.Mapping[str, typing.Any]]
               ) -> pandas.DataFrame:
-        """The same as a pandas DataFrame."""
+        """A row for each run: its values, its exit status and, where it ended well, what `measure` says of it."""
         import pandas
-        return pandas.DataFrame(self.table(measure))
+        return pandas.DataFrame([{**outcome.parameters, "status": outcome.status,
+                                  **(measure(outcome) if outcome.ended_well else {})} for outcome in self])
 
 
 def sweep(deck: str | os.PathLike, folder: str | os.PathLike | None = None, *,

@@ -83,7 +83,7 @@ def draw_tractions(axes, chain, times, limit):
     axes.set_xlabel("arc length s along the slave")
     axes.set_ylabel("|traction|")
     axes.set_ylim(bottom=0.0)
-    axes.grid(True, linewidth=0.3, color="#bbbbbb")
+    axes.grid(True)
     axes.legend(fontsize=7)
 
 

@@ -27,7 +27,7 @@ def lines(series: list[tuple[str, np.ndarray, np.ndarray]], ylabel: str, xlabel:
         axes.set_ylabel(ylabel)
         axes.margins(x=0.0)
         axes.locator_params(axis="x", nbins=6)
-        axes.grid(True, linewidth=0.3, color="#bbbbbb")
+        axes.grid(True)
         if len(series) > 1:
             figure.legend(loc=plots.beside("upper center"), ncols=min(4, len(series)), frameon=False,
                           handlelength=1.6, columnspacing=1.2)

@@ -176,14 +176,10 @@ def perform(wanted):
             collect(study, jobs, sweep, (results if wanted.publish else folder) / "doc", wanted.publish)
 
 
-def interrupt(*_):
-    raise KeyboardInterrupt
-
-
 def main(arguments=None):
     """Returns the exit status."""
     wanted = build_parser().parse_args(arguments)
-    signal.signal(signal.SIGTERM, interrupt)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     status = DONE
     for name in pages.STUDIES if wanted.name == "all" else (wanted.name,):
         try:

@@ -66,11 +66,6 @@ def chain_pressure(stiffness, **more):
     return float(chain.solve(chain.Blocks(penalty=stiffness, **more)).pressure[-1])
 
 
-def deviation(pressure, exact):
-    """p/p0 - 1 of the nodes of a surface."""
-    return pressure / exact - 1.0
-
-
 def mean_pressure(x, pressure):
     """Force of a surface over its length."""
     length = half_segments(x)
@@ -79,7 +74,7 @@ def mean_pressure(x, pressure):
 
 def side_deviations(run, exact):
     """{side: p/p0 - 1}; `exact` None: p0 is the mean pressure of the side."""
-    return {side: deviation(p, exact or mean_pressure(x, p))
+    return {side: p / (exact or mean_pressure(x, p)) - 1.0
             for side, x, p in (("slave", run.slave_x, run.slave), ("master", run.master_x, run.master))}
 
 

@@ -140,7 +140,7 @@ def chart(table, folder):
                 axes.plot(reach, reach, color="black", linewidth=0.5)
             axes.set(xscale="log", yscale="log", title=TITLES[scene], ylabel="estimate, %",
                      xlabel="error of the profile, %" if scene in CLOSED else "roughness of the force, %")
-            axes.grid(True, which="both", linewidth=0.3, color="#bbbbbb")
+            axes.grid(True, which="both")
         figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
         save_small(figure, folder / "estimates.png", lines=True)
 

@@ -124,7 +124,7 @@ def chart(table, folder):
             axes.set_ylabel(f"error, {text}")
         for axes in panels.flat:
             axes.set(xscale="log", yscale="log")
-            axes.grid(True, linewidth=0.3, color="#bbbbbb")
+            axes.grid(True)
         figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=5,
                       title="lines: arcs; broken, hollow: facets (smooth=-1)")
         save_small(figure, folder / "round.png", lines=True)

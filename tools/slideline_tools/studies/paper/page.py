@@ -45,14 +45,8 @@ def chart(table, folder):
             runs = runs[(runs["mesh"] == PICTURED_MESH) & (runs["penalty"] == PICTURED_PENALTY)]
         if len(runs):
             level = int(runs["level"].min())
-            with plt.rc_context({**STYLE, "figure.dpi": dpi, "savefig.dpi": dpi}):
+            with plt.rc_context({**STYLE, "figure.dpi": dpi, "savefig.dpi": dpi, "axes.grid": True}):
                 save_small(draw(types_of(runs, folder, level), level), folder / f"{name}.png", lines=scene != "collision")
-
-
-def grid_on(*panels):
-    """Thin lines behind the curves."""
-    for axes in panels:
-        axes.grid(True, linewidth=0.3, color="#bbbbbb")
 
 
 def patch_figure(folders, _level):
@@ -63,7 +57,6 @@ def patch_figure(folders, _level):
             axes.plot(x, pressure, color=colour(ctype), label=label(ctype), marker="o", markersize=3)
     for axes, title in zip(panels, ("slave side", "master side")):
         axes.set(title=title, xlabel="x (m)")
-    grid_on(*panels)
     panels[0].set_ylabel("contact pressure (Pa)")
     panels[0].legend(fontsize=7)
     return figure
@@ -92,7 +85,6 @@ def block_figure(folders, _level):
     whole.set(ylabel="contact pressure (Pa)", title="slave surface")
     whole.set_ylim(0.0, 1.05 * whole.dataLim.ymax)
     whole.legend(ncols=4, loc="lower center")
-    grid_on(whole, *panels.values())
     return figure
 
 
@@ -114,7 +106,6 @@ def sliding_figure(folders, level):
             "shaded: below the threshold of a peak"), ("MN/m", "MN/m", "% of the mean force")):
         axes.set_title(title, loc="left")
         axes.set_ylabel(unit)
-    grid_on(*panels)
     panels[0].legend(ncols=2)
     panels[2].set_xlim([1e3 * time for time in sliding.judged_interval()])
     panels[2].set_xlabel("time, ms")

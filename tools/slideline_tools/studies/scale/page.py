@@ -136,7 +136,7 @@ def draw(seen, constants):
     right.set(xlabel="processes", ylabel="predicted efficiency", ylim=(0.0, 1.05))
     right.legend(title="elements (with contact: dashed)", fontsize=7)
     for axes in (left, right):
-        axes.grid(True, linewidth=0.3, color="#bbbbbb")
+        axes.grid(True)
     return figure
 
 

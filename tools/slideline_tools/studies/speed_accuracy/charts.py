@@ -43,7 +43,7 @@ def draw_panel(axes, errors, cost):
     if errors["floor"].max() > low:
         axes.axhspan(low, min(errors["floor"].max(), high), color="#00000010", linewidth=0)
         axes.set_ylim(low, high)
-    axes.grid(True, which="major", linewidth=0.3, color="#bbbbbb")
+    axes.grid(True, which="major")
     for axis in (axes.xaxis, axes.yaxis):
         plain_ticks(axis)
 
