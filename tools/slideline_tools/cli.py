@@ -39,8 +39,7 @@ def build_parser():
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for group in (answers, pictures, numbers, decks):
         group.add_all(commands)
-    add(commands, completion, "completion", "script that completes words in the shell",
-        "Print a script that completes the commands, options and choices of slideline-tools.", """\
+    add(commands, completion, "completion", "script that completes words in the shell", """\
 completion bash > ~/.local/share/bash-completion/completions/slideline-tools
 completion zsh > ~/.zsh/_slideline-tools    # a folder of $fpath""",
         ("shell", {"choices": SHELLS}))
@@ -57,7 +56,7 @@ def parsers(parser):
 
 
 def completion(options):
-    """Print the script: choices where there are some, files where a word is none."""
+    """Print a script that completes the commands, options and choices of slideline-tools."""
     import shtab
     whole = build_parser()
     for action in (action for one in parsers(whole) for action in one._actions):

@@ -27,16 +27,15 @@ class Formatter(argparse.HelpFormatter):
                                          subsequent_indent=indent) for block in blocks)
 
 
-def add(commands, run, name: str, summary: str, description: str, examples: str,
-        *arguments: Argument) -> argparse.ArgumentParser:
-    """Add a command: `run` does it and gives its exit status; an argument is its names and, last,
+def add(commands, run, name: str, summary: str, examples: str, *arguments: Argument) -> argparse.ArgumentParser:
+    """Add a command: `run` does it, gives its exit status and has its description; an argument is its names and, last,
     what argparse is to know of it; `examples` are lines without `slideline-tools` and notes behind
     a blank line."""
     lines, _, notes = examples.partition("\n\n")
     lines = "\n".join(f"  slideline-tools {line}" if not line.startswith(" ") else f"  {line}"
                       for line in lines.splitlines())
     head = "Examples" if lines.count("slideline-tools") > 1 else "Example"
-    parser = commands.add_parser(name, help=summary, description=description,
+    parser = commands.add_parser(name, help=summary, description=run.__doc__,
                                  formatter_class=Formatter, epilog=f"{head}:\n\n{lines}\n\n{notes}")
     for *names, words in arguments:
         parser.add_argument(*names, **words)

@@ -15,10 +15,7 @@ CHEAPEST_FIRST = (1, 2, 3, 4, 5, 6, 7)
 
 def add_all(commands) -> None:
     """Add this command."""
-    parser = add(commands, answer, "answer", "a number with its uncertainty, at least cost",
-        "Run a deck on its mesh divided by 1, 2, 3 and further until a quantity is known as well as was asked for, or for so "
-        "many seconds, and say it with its uncertainty. Results, the table, answer.png and answer.json go to a folder; "
-        "runs that are there already are taken as they are. Progress goes to standard error.", """\
+    parser = add(commands, answer, "answer", "a number with its uncertainty, at least cost", """\
 answer deck.k --of rcforc:fy@interface=1,side=slave:largest --within 2%%
 answer deck.k --of nodout:uy@node=5:end --of field:plastic_strain:largest --seconds 60
 answer deck_{level}.k --mesh-parameter level --of glstat:internal:at=1e-3 --within 1%%
@@ -42,7 +39,9 @@ impulse, end or at=T, or field:NAME[@x=X,y=Y]:MEASURE. Exit status: 0 within, 1 
 
 
 def answer(options) -> int:
-    """Find the answer, write and print it."""
+    """Run a deck on its mesh divided by 1, 2, 3 and further until a quantity is known as well as was asked for, or for so
+    many seconds, and say it with its uncertainty. Results, the table, answer.png and answer.json go to a folder;
+    runs that are there already are taken as they are. Progress goes to standard error."""
     from slideline_tools.program import ENDINGS, STOPPED, RunError
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # a batch system stops it as a keyboard does, with its run
     try:

@@ -46,10 +46,7 @@ OTHERS = ("command", "scene", "output", "run", "parser")
 
 def add_all(commands) -> None:
     """Add these commands."""
-    scenes = add(commands, make_deck, "make-deck", "write the deck of a scene",
-                 "Write the keyword deck of a scene, as those of its folder in input; "
-                 "numbers such as the penalty are parameters of the deck, p:NAME=VALUE. The paper "
-                 "is that of Kang, Lee & Shin (2023).", """\
+    scenes = add(commands, make_deck, "make-deck", "write the deck of a scene", """\
 make-deck collision --level 2 -o collision_2.k
 make-deck hertz --static -o hertz.k
 make-deck patch --mesh 7/5 --penalty 1e4 -o patch.k
@@ -67,11 +64,7 @@ make-deck SCENE --help""").add_subparsers(dest="scene", required=True, metavar="
                                help="slave and master surface exchanged")
         for option, words in OWN_OPTIONS.get(name, ()):
             scene.add_argument(option, **words)
-    add(commands, refine, "refine", "the deck of a run on a mesh that is finer where it pays",
-        "Write the deck of a run with the elements divided in four whose stress errors are largest, from time zero on. "
-        "Neighbours differ by one division at most, with hanging nodes between them (*CONSTRAINED_ADAPTIVITY); "
-        "elements along a contact surface are divided all or none. The run needs *DATABASE_ERROR_INDICATOR "
-        "for the field error.", """\
+    add(commands, refine, "refine", "the deck of a run on a mesh that is finer where it pays", """\
 refine results/hertz --fraction 0.5 -o hertz_2.k
 refine results/hertz --fraction 0.3 --surfaces -o hertz_2.k
 refine results/bar --field plastic_strain -o bar_2.k
@@ -83,11 +76,7 @@ The new deck has the keyword too: run it and refine it again.""",
         ("--field", {"default": "error", "metavar": "NAME", "help": "cell field that says where (error)"}),
         ("--surfaces", {"action": "store_true", "help": "divide the elements along all contact surfaces too"}),
         output_to("deck file to write", required=True), PROGRAM)
-    add(commands, from_mesh, "from-mesh", "the skeleton of a deck from a mesh of gmsh and others",
-        "Write the skeleton of a deck from a mesh file: nodes, quads and triangles, physical groups"
-        " of faces as parts, of lines as segment and node sets, of points as node sets; materials, "
-        "conditions and contact are to be filled in. Reads what meshio reads (.msh, .inp, .vtk, "
-        "...).", """\
+    add(commands, from_mesh, "from-mesh", "the skeleton of a deck from a mesh of gmsh and others", """\
 from-mesh model.msh                    # model.k: fill in materials, conditions, contact
 from-mesh model.msh -o decks/first.k
 
@@ -97,7 +86,8 @@ gmsh: recombine to quads, Mesh.ElementOrder 1, physical groups for bodies and ed
 
 
 def make_deck(options) -> int:
-    """Write the deck of a scene."""
+    """Write the keyword deck of a scene, as those of its folder in input; numbers such as the penalty are parameters of the
+    deck, p:NAME=VALUE. The paper is that of Kang, Lee & Shin (2023)."""
     from slideline_tools import scenes
     from slideline_tools.files import output
     given = {name: value for name, value in vars(options).items() if name not in OTHERS}
@@ -112,7 +102,9 @@ def make_deck(options) -> int:
 
 
 def from_mesh(options) -> int:
-    """Read a mesh, write its deck, and say what became of the groups."""
+    """Write the skeleton of a deck from a mesh file: nodes, quads and triangles, physical groups of faces as parts, of lines
+    as segment and node sets, of points as node sets; materials, conditions and contact are to be filled in. Reads what
+    meshio reads (.msh, .inp, .vtk, ...)."""
     from slideline_tools import from_mesh as meshes
     from slideline_tools.files import output
     from slideline_tools.names import counted
@@ -136,7 +128,9 @@ def from_mesh(options) -> int:
 
 
 def refine(options) -> int:
-    """Write the deck of a run on a mesh that is finer where it pays."""
+    """Write the deck of a run with the elements divided in four whose stress errors are largest, from time zero on.
+    Neighbours differ by one division at most, with hanging nodes between them (*CONSTRAINED_ADAPTIVITY); elements along a
+    contact surface are divided all or none. The run needs *DATABASE_ERROR_INDICATOR for the field error."""
     from slideline_tools.answer.refine import refine_run
     from slideline_tools.files import output
     from slideline_tools.finished_run import Run

@@ -10,9 +10,7 @@ RUN_PATH = ("run_path", {"metavar": "RUN", "help": ANY_FILE})
 
 def add_all(commands) -> None:
     """Add these commands."""
-    add(commands, compare, "compare", "compare a history with a reference",
-        "Compare a CSV history with a reference, per column and entity, on the times of the "
-        "reference, with peak, time of peak, impulse and final value.", """\
+    add(commands, compare, "compare", "compare a history with a reference", """\
 compare new/x.rcforc.csv old/x.rcforc.csv --rtol 0.01
 compare new/x.glstat.csv old/x.glstat.csv --columns kinetic,internal \\
       --column-rtol internal=0.02 --measures peak,final
@@ -32,30 +30,24 @@ Exit status: 0 agreed, 1 a column failed, 2 the tables cannot be compared.""",
                                 "(default: all); start and end, the first and last time, are "
                                 "always judged"}))
     add(commands, advise, "advise", "say what in the model of a finished run was not needed",
-        "Read a finished run and say what in its model was not needed, with the figures that show "
-        "it, the expected saving and what to change in the deck.",
         f"advise {RUN}\nadvise {RUN} --all --json", RUN_PATH,
         ("--json", {"action": "store_true", "help": "print JSON"}),
         ("--all", {"action": "store_true", "help": "also what saves less than 1 %% of the run"}))
-    add(commands, binout, "binout", "write DYNA's binout from the histories of a run",
-        "Write all history tables of a run (glstat, rcforc, nodout, matsum, sleout, spcforc, "
-        "rwforc, elout, rbdout, bndout, nodfor, secforc) to one binout in DYNA's LSDA format. A "
-        "killed run is taken as far as it got.", f"""\
+    add(commands, binout, "binout", "write DYNA's binout from the histories of a run", f"""\
 binout {RUN}
 binout {RUN} -o binout0000
 
 With lasso-python: Binout("binout0000").as_df("rcforc", "y_force").""",
         RUN_PATH, output_to("file to write (default: <job>.binout0000 beside the results)"))
-    add(commands, d3plot, "d3plot", "write the d3plot family from the states of a run",
-        "Write the states of a run as a d3plot family (single precision) for LS-PrePost, "
-        "lasso-python and VTK's LS-DYNA reader.", f"""\
+    add(commands, d3plot, "d3plot", "write the d3plot family from the states of a run", f"""\
 d3plot {RUN}           # collision.d3plot, collision.d3plot01, ...
 d3plot {RUN} -o d3plot""",
         RUN_PATH, output_to("first file of the family (default: <job>.d3plot beside the results)"))
 
 
 def compare(options) -> int:
-    """Compare two tables."""
+    """Compare a CSV history with a reference, per column and entity, on the times of the reference, with peak, time of peak,
+    impulse and final value."""
     from slideline_tools import compare as judge
     from slideline_tools.histories import read_csv
     result, reference = read_csv(options.result), read_csv(options.reference)
@@ -79,7 +71,8 @@ def compare(options) -> int:
 
 
 def advise(options) -> int:
-    """Print the advice on a run."""
+    """Read a finished run and say what in its model was not needed, with the figures that show it, the expected saving and
+    what to change in the deck."""
     from slideline_tools import advise as adviser
     from slideline_tools.advise import report
     run, advice, notes = adviser.advise(options.run_path)
@@ -90,7 +83,8 @@ def advise(options) -> int:
 
 
 def binout(options) -> int:
-    """Write the binout."""
+    """Write all history tables of a run (glstat, rcforc, nodout, matsum, sleout, spcforc, rwforc, elout, rbdout, bndout,
+    nodfor, secforc) to one binout in DYNA's LSDA format. A killed run is taken as far as it got."""
     from slideline_tools.binout import write_binout
     from slideline_tools.finished_run import Run
     run = Run(options.run_path)
@@ -100,7 +94,7 @@ def binout(options) -> int:
 
 
 def d3plot(options) -> int:
-    """Write the d3plot family."""
+    """Write the states of a run as a d3plot family (single precision) for LS-PrePost, lasso-python and VTK's LS-DYNA reader."""
     from slideline_tools.d3plot import write_d3plot
     from slideline_tools.finished_run import Run
     run = Run(options.run_path)

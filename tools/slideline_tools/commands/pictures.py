@@ -23,12 +23,10 @@ velocities, motions and loads have the length of the largest value over time, wi
 
 def add_all(commands) -> None:
     """Add these commands."""
-    add(commands, info, "info", "say what a results file holds", "Print what a results file holds.",
+    add(commands, info, "info", "say what a results file holds",
         f"info {FILE}", RESULTS)
     add(commands, plot, "plot",
-        "draw a field, histories, the contact pressure or zones of stick and slip",
-        "Draw a picture of a results file. Without --field, --state, --history, --contact or "
-        "--zones: a field above the energies and the contact force.", f"""\
+        "draw a field, histories, the contact pressure or zones of stick and slip", f"""\
 plot {FILE} -o x.png
 plot {FILE} --field stress:xy --state 0.0007 --scale 5 -o x.png
 plot {FILE} --field mises --state 10 --state -1 -o x.pdf
@@ -49,13 +47,10 @@ plot {FILE} --zones --state 20 --state -1 -o x.png
                              "and its traction beside mu p at the states"}),
         output_to("picture (.png, .pdf, .svg)", required=True))
     add(commands, animate, "animate", "moving picture of a field (GIF or MP4)",
-        "Write a moving picture of all states.",
         f"animate {FILE} --field mises --rate 24 -o x.gif", *OF_FIELD,
         ("--rate", {"type": float, "default": 12.0, "help": "pictures a second (12)"}),
         output_to("file ending in .gif or .mp4", required=True))
-    add(commands, revolve, "revolve", "turn an axisymmetric run about its axis into solids",
-        "Turn the states of an axisymmetric run about the axis x = 0: a file of solids for ParaView "
-        "with all states and fields (.vtkhdf), or a picture of one state (.png, takes VTK).", f"""\
+    add(commands, revolve, "revolve", "turn an axisymmetric run about its axis into solids", f"""\
 revolve {RUN.replace('collision', 'taylor')} -o taylor_3d.vtkhdf
 revolve {RUN.replace('collision', 'taylor')} --field mises --state -1 --degrees 180 -o x.png""", RESULTS,
         ("--degrees", {"type": float, "default": 270.0, "help": "angle, at most 360 (270)"}),
@@ -63,11 +58,7 @@ revolve {RUN.replace('collision', 'taylor')} --field mises --state -1 --degrees 
         ("--field", {"help": "field that colours the picture"}),
         ("--state", {"default": "-1", "help": "state of the picture: number or time (-1, the last)"}),
         output_to("file ending in .vtkhdf or .png", required=True))
-    add(commands, report, "report", "write an HTML report of a run",
-        "Write one HTML file about a run: how it ended, energies and their balance, force and "
-        "pressure of each interface, rigid walls, fields, warnings, parts, timing. It needs no "
-        "network and no other file. Killed and running runs are reported as far as they got.",
-        f"""\
+    add(commands, report, "report", "write an HTML report of a run", f"""\
 report {RUN}
 report {RUN} --field mises --field stress:xy --state 0.0003 --state -1 -o r.html
 
@@ -82,10 +73,7 @@ A batch: for run in results/*/; do slideline-tools report "$run"; done""",
                              "repeated (default: at the largest contact force, and the last)"}),
         ("--scale", {"type": float, "default": 1.0,
                      "help": "factor on the displacements in the pictures (1)"}), PROGRAM)
-    add(commands, draw, "draw", "picture of a model before its run",
-        "Draw the model of a deck: mesh by part, node sets, contact surfaces with walking "
-        "direction and outward normals, held nodes, motions, initial velocities, loads, pressures, rigid "
-        "bodies. The program reads the deck, so that the picture shows what would run.", f"""\
+    add(commands, draw, "draw", "picture of a model before its run", f"""\
 draw deck.k
 draw deck.k p:v0=-40.0 --show mesh,surfaces --zoom 0 0.02 -0.002 0.002 -o gap.png
 draw results/collision -o collision.png
@@ -109,7 +97,8 @@ def info(options) -> int:
 
 
 def plot(options) -> int:
-    """Draw a picture of a run."""
+    """Draw a picture of a results file. Without --field, --state, --history, --contact or --zones: a field above the energies
+    and the contact force."""
     import slideline_tools
     slideline_tools.plot(options.results, options.field, *options.state or (), scale=options.scale,
                          zoom=options.zoom, history=options.history or (), contact=options.contact,
@@ -133,7 +122,8 @@ def animate(options) -> int:
 
 
 def revolve(options) -> int:
-    """Write solids, or draw one state of them."""
+    """Turn the states of an axisymmetric run about the axis x = 0: a file of solids for ParaView with all states and fields
+    (.vtkhdf), or a picture of one state (.png, takes VTK)."""
     from slideline_tools import UserError
     from slideline_tools import revolve as solids
     from slideline_tools.results import read
@@ -149,7 +139,9 @@ def revolve(options) -> int:
 
 
 def report(options) -> int:
-    """Write the report."""
+    """Write one HTML file about a run: how it ended, energies and their balance, force and pressure of each interface, rigid
+    walls, fields, warnings, parts, timing. It needs no network and no other file. Killed and running runs are reported as
+    far as they got."""
     from slideline_tools.report import write_report
     path = write_report(options.run_path, options.output, options.field, options.state,
                         options.scale, options.program)
@@ -167,7 +159,9 @@ def wanted(text: str) -> list[str]:
 
 
 def draw(options) -> int:
-    """Draw a model, and say what could not be shown."""
+    """Draw the model of a deck: mesh by part, node sets, contact surfaces with walking direction and outward normals, held
+    nodes, motions, initial velocities, loads, pressures, rigid bodies. The program reads the deck, so that the picture shows
+    what would run."""
     from slideline_tools.draw import draw as draw_model
     from slideline_tools.names import counted
     stem = pathlib.Path(options.deck).resolve().name
