@@ -5,14 +5,15 @@ A block is ("heading", words), ("text", words), ("note", words), ("warning", wor
 ("table", Table), ("grid", [Picture, ...]) or ("folded", (title, text)).
 """
 import base64
-import dataclasses
 import io
+import re
 import typing
 
 import jinja2
 import matplotlib.pyplot as plt
 
-MOST_COLUMNS = 9   # of a table, on a page
+#: what `figures` writes, or nothing
+NUMBER = re.compile(r"[-+.\d e]*|–|-?inf|nan")
 NO_DATE = {"Date": None, "Creator": None, "Format": None, "Type": None}
 
 Block = tuple[str, typing.Any]
@@ -26,31 +27,19 @@ class Section(typing.NamedTuple):
     blocks: list[Block]
 
 
-@dataclasses.dataclass
-class Table:
-    """A table of plain cells, whose columns `numeric` are set to the right."""
+class Table(typing.NamedTuple):
+    """A table of plain cells."""
 
     head: list
     rows: list[list]
-    numeric: typing.Collection[int] = ()
 
     @property
-    def parts(self) -> list[tuple[list, list[list], typing.Collection[int]]]:
-        """Head, rows and columns of numbers; of a table too wide for a page several such parts,
-        each with the first column."""
-        if len(self.head) <= MOST_COLUMNS:
-            return [(self.head, self.rows, self.numeric)]
-        count = -(-(len(self.head) - 1) // (MOST_COLUMNS - 1))
-        size = -(-(len(self.head) - 1) // count)
-        chosen = [[0, *range(first, min(first + size, len(self.head)))]
-                  for first in range(1, len(self.head), size)]
-        return [([self.head[k] for k in columns], [[row[k] for k in columns] for row in self.rows],
-                 [place for place, k in enumerate(columns) if k in self.numeric])
-                for columns in chosen]
+    def numeric(self) -> list[int]:
+        """The columns of numbers, which are set to the right."""
+        return [k for k, column in enumerate(zip(*self.rows)) if all(NUMBER.fullmatch(str(cell)) for cell in column)]
 
 
-@dataclasses.dataclass
-class Picture:
+class Picture(typing.NamedTuple):
     """An inline picture with its words; `width` and `height` in pixels."""
 
     source: str

@@ -123,7 +123,7 @@ def energies(run: Gathered) -> list[Block]:
     else:
         pictures.append(picture(charts.step(glstat), "Time step over time"))
     head = ["energy", "at the start", "at the end", "lowest", "at time", "highest", "at time"]
-    return [*blocks, ("table", Table(head, rows, range(1, 7)))]
+    return [*blocks, ("table", Table(head, rows))]
 
 
 def extremes(times: np.ndarray, values: np.ndarray) -> list[str]:
@@ -188,7 +188,7 @@ def one_interface(run: Gathered, number: int, states: list[int]) -> list[Block]:
     if not rows:
         return [("text", "Neither forces (*DATABASE_RCFORC) nor pressures (plot states) were "
                          "written.")]
-    return [("grid", pictures), ("table", Table(["", "value", "at time", ""], rows, (1, 2)))]
+    return [("grid", pictures), ("table", Table(["", "value", "at time", ""], rows))]
 
 
 def at_row(words: str, table: History, column: str | np.ndarray, values: np.ndarray, digits: int,
@@ -260,7 +260,7 @@ def walls(run: Gathered) -> list[Block]:
             "at time", "impulse", "work on the nodes", "most nodes at once"]
     if rwforc is None:
         head, rows = head[:5], [row[:5] for row in rows]
-    blocks: list[Block] = [("grid", pictures), ("table", Table(head, rows, range(1, 10)))]
+    blocks: list[Block] = [("grid", pictures), ("table", Table(head, rows))]
     if rwforc is None:
         blocks.append(("note", "Their forces were not written (*DATABASE_RWFORC)."))
     return blocks if rows else []
@@ -333,7 +333,7 @@ def curves(history: History, title: str, columns: list[str]) -> list[Block]:
     rows = [[words, *(figures(value, 6) for name in drawn
                       for value in (rows[name][-1], np.abs(rows[name]).max()))]
             for words, rows in found[:MOST_NODES]]
-    blocks: list[Block] = [("grid", pictures), ("table", Table(head, rows, range(1, len(head))))]
+    blocks: list[Block] = [("grid", pictures), ("table", Table(head, rows))]
     if len(found) > charts.MOST_LINES:
         blocks.append(("note", f"{len(found)} in all: the charts show {charts.MOST_LINES}, the "
                                f"table {len(rows)} of them."))
@@ -360,7 +360,7 @@ def parts(run: Gathered) -> list[Block]:
     head = ["part", "title", "elements", "material", "law",
             *(name.replace("_", " ") for name in sums)]
     note = ("note", "Energies and momenta are those of the last row of matsum.")
-    return [("heading", "Parts"), ("table", Table(head, rows, (2, *range(5, 11)))),
+    return [("heading", "Parts"), ("table", Table(head, rows)),
             *([note] if matsum else [])] if rows else []
 
 
@@ -370,7 +370,7 @@ def materials(run: Gathered) -> list[Block]:
     rows = [[number, one.law, *(figures(value, 5) for value in (one.density, one.young, one.poisson))]
             for number, one in sorted(found.items())]
     head = ["material", "law", "density", "Young's modulus", "Poisson's ratio"]
-    return [("heading", "Materials"), ("table", Table(head, rows, range(2, 5)))] if rows else []
+    return [("heading", "Materials"), ("table", Table(head, rows))] if rows else []
 
 
 def interfaces(run: Gathered) -> list[Block]:
@@ -378,7 +378,7 @@ def interfaces(run: Gathered) -> list[Block]:
     rows = [[one.id, one.formulation, one.ctype, len(one.slave.nodes), len(one.master.nodes), figures(one.friction)]
             for one in run.model.interfaces] if run.model else []
     head = ["interface", "formulation", "type", "slave nodes", "master nodes", "friction"]
-    return [("heading", "Interfaces"), ("table", Table(head, rows, range(3, 6)))] if rows else []
+    return [("heading", "Interfaces"), ("table", Table(head, rows))] if rows else []
 
 
 # ---- timing, advice, log ------------------------------------------------------------------------
@@ -392,7 +392,7 @@ def timing(run: Gathered) -> list[Block]:
             for phase, seconds, share, calls in zip(*columns)]
     chart = [("grid", [picture(charts.timing(run.timing), "Wall clock by phase")])]
     return (chart if len(rows) > 1 else []) + [
-        ("table", Table(["phase", "seconds", "share, %", "calls"], rows, range(1, 4)))]
+        ("table", Table(["phase", "seconds", "share, %", "calls"], rows))]
 
 
 def advice(run: Gathered) -> list[Block]:
@@ -415,8 +415,8 @@ def advice(run: Gathered) -> list[Block]:
 def files(run: Gathered) -> list[Block]:
     """The files, the deck without its mesh, and the log."""
     blocks: list[Block] = [
-        ("table", Table(["file", "bytes"], [[run.path(ending).name, figures(size)] for ending, size in run.sizes.items()],
-                        (1,))), ("note", f"Folder: {run.folder.resolve()}")]
+        ("table", Table(["file", "bytes"], [[run.path(ending).name, figures(size)] for ending, size in run.sizes.items()])),
+        ("note", f"Folder: {run.folder.resolve()}")]
     if run.deck:
         blocks.append(("folded", ("The deck as run, without its mesh", shortened(re.sub(
             r"^(\*(?:NODE|ELEMENT).*\n)((?:[^*\n].*\n|\n)+)",
