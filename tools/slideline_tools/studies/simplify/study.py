@@ -31,7 +31,8 @@ NO_STATES, NO_HISTORIES, NO_FORCE = "p:dtplot=1", "p:dthist=1", "p:dtforc=1"
 class Variant:
     """A deck by level and options of the program.
 
-    `turns` as in Job; `once`: not timed; `scene`: where `deck` comes from.
+    `turns` as in Job; `once`: not timed; `scene`: where `deck` comes from; `against`: the variant it is compared with, and
+    the factor on the forces of that.
     """
 
     scene: str
@@ -40,6 +41,7 @@ class Variant:
     turns: int = 3
     once: bool = False
     cost: float = 0.15
+    against: tuple[str, float] = ("", 1.0)
 
 
 def made(scene, *changes):
@@ -51,50 +53,34 @@ def variants():
     """All variants by name."""
     lean, full, awake = scenes.collision, decks.full_collision, made(scenes.collision, decks.awake)
     wider, rigid_die = decks.wider_collision, functools.partial(scenes.sliding, rigid_die=True)
+    like_lean = ("collision", 1.0)
     listed = {
-        "collision": Variant("collision", lean),
+        "collision": Variant("collision", lean, against=("collision_full", 0.5)),
         "collision_full": Variant("collision", full, cost=0.25),
-        "collision_plastic_projectile": Variant("collision", made(lean, decks.plastic_projectile)),
-        "collision_no_states": Variant("collision", lean, (NO_STATES,)),
-        "collision_force_alone": Variant("collision", lean, (NO_STATES, NO_HISTORIES)),
-        "collision_no_output": Variant("collision", lean, (NO_STATES, NO_HISTORIES, NO_FORCE)),
+        "collision_plastic_projectile": Variant("collision", made(lean, decks.plastic_projectile), against=like_lean),
+        "collision_no_states": Variant("collision", lean, (NO_STATES,), against=like_lean),
+        "collision_force_alone": Variant("collision", lean, (NO_STATES, NO_HISTORIES), against=like_lean),
+        "collision_no_output": Variant("collision", lean, (NO_STATES, NO_HISTORIES, NO_FORCE), against=like_lean),
         "collision_too_much": Variant(
-            "collision", made(full, decks.plastic_projectile, decks.awake), cost=0.3),
+            "collision", made(full, decks.plastic_projectile, decks.awake), cost=0.3, against=("collision", 2.0)),
         "collision_wider_type_3": Variant("collision", wider, ("ctype=3",), once=True),
-        "collision_wider_awake_type_3": Variant("collision", made(wider, decks.awake),
-                                                ("ctype=3",), once=True),
+        "collision_wider_awake_type_3": Variant("collision", made(wider, decks.awake), ("ctype=3",), once=True,
+                                                against=("collision_wider_type_3", 1.0)),
         "hertz": Variant("hertz", scenes.hertz),
-        "hertz_plastic": Variant("hertz", made(scenes.hertz, decks.plastic_hertz)),
+        "hertz_plastic": Variant("hertz", made(scenes.hertz, decks.plastic_hertz), against=("hertz", 1.0)),
         "sliding": Variant("sliding", scenes.sliding, turns=1, cost=1.2),
-        "sliding_rigid": Variant("sliding", rigid_die, turns=1),
-        "sliding_awake": Variant("sliding", made(scenes.sliding, decks.awake), turns=1, cost=1.6),
+        "sliding_rigid": Variant("sliding", rigid_die, turns=1, against=("sliding", 1.0)),
+        "sliding_awake": Variant("sliding", made(scenes.sliding, decks.awake), turns=1, cost=1.6, against=("sliding", 1.0)),
     }
     for ctype in ALL_TYPES:
         words, once = (f"ctype={ctype}",), ctype not in TIMED_TYPES
-        listed[f"collision_awake_type_{ctype}"] = Variant("collision", awake, words, once=once)
+        half = "collision" if ctype == USUAL else f"collision_type_{ctype}"
+        listed[f"collision_awake_type_{ctype}"] = Variant("collision", awake, words, once=once, against=(half, 1.0))
         if ctype != USUAL:
-            listed[f"collision_type_{ctype}"] = Variant("collision", lean, words, once=once)
-            listed[f"collision_full_type_{ctype}"] = Variant("collision", full, words, once=True)
+            whole = f"collision_full_type_{ctype}"
+            listed[half] = Variant("collision", lean, words, once=once, against=(whole, 0.5))
+            listed[whole] = Variant("collision", full, words, once=True)
     return listed
-
-
-PAIRS = {  # variant: (the variant it is compared with, factor on the forces of the latter)
-    "collision": ("collision_full", 0.5),
-    "sliding_rigid": ("sliding", 1.0),
-    "sliding_awake": ("sliding", 1.0),
-    "collision_plastic_projectile": ("collision", 1.0),
-    "hertz_plastic": ("hertz", 1.0),
-    "collision_no_states": ("collision", 1.0),
-    "collision_force_alone": ("collision", 1.0),
-    "collision_no_output": ("collision", 1.0),
-    "collision_too_much": ("collision", 2.0),
-    "collision_awake_type_2": ("collision", 1.0),
-    "collision_wider_awake_type_3": ("collision_wider_type_3", 1.0),
-    **{f"collision_awake_type_{ctype}": (f"collision_type_{ctype}", 1.0)
-       for ctype in ALL_TYPES if ctype != USUAL},
-    **{f"collision_type_{ctype}": (f"collision_full_type_{ctype}", 0.5)
-       for ctype in ALL_TYPES if ctype != USUAL},
-}
 
 
 def jobs(options):
@@ -124,15 +110,15 @@ def measure(job, folder):
 
 
 def derive(table, folder):
-    """With columns that compare the first run of a variant with that of another, see PAIRS."""
+    """With columns that compare the first run of a variant with that of another."""
     first = finished(table)
     first = first[first["repeat"] == 1].set_index(["variant", "level"])["run"]
-    rows = []
+    rows, known = [], variants()
     for (name, level), run in first.items():
-        other, factor = PAIRS.get(name, (None, 1.0))
+        other, factor = known[name].against
         if (other, level) in first:
             rows.append({"run": run, **comparison(folder / "runs" / run, folder / "runs" / first[other, level],
-                                                  variants()[name].scene, factor)})
+                                                  known[name].scene, factor)})
     return table.merge(pd.DataFrame(rows), how="left", on="run") if rows else table
 
 
