@@ -179,7 +179,7 @@ def made_table(types_of=tuple(SERIES)):
                        "moment": 2e-3 if series == 4 else 1e-15, "reference_levels": "2, 3, 6"}
                 for measure in scene.measures:
                     row[measure.key] = 0.2 / level / (8 - k if k == 6 else k)
-                    if measure.referenced:
+                    if measure.key in reference.DISTANCES:
                         row[f"{measure.key}_floor"], row[f"{measure.key}_order"] = 0.02, 1.0
                 if name in ("patch", "block") and k in (4, 5, 7, 8, 9):
                     row["pressure_error"] = 1e-12

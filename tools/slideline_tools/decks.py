@@ -85,8 +85,7 @@ class Deck:
 
     def names(self, names, widths):
         """The comment line that names the fields below it."""
-        cells = [name.rjust(width) for name, width in zip(names, widths)]
-        line = "".join(cells)
+        line = "".join(name.rjust(width) for name, width in zip(names, widths))
         self.lines.append("$#" + line[2:])
         return self
 
@@ -100,8 +99,7 @@ class Deck:
         """One card without field names."""
         if len(values) > len(widths):
             raise ValueError(f"{len(values)} values for {len(widths)} fields")
-        cells = [field(value, width) for value, width in zip(values, widths)]
-        self.lines.append("".join(cells).rstrip())
+        self.lines.append("".join(field(value, width) for value, width in zip(values, widths)).rstrip())
         return self
 
     def table(self, names, widths, rows):

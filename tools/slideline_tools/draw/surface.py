@@ -19,12 +19,6 @@ class Surface:
         _, first = np.unique(flat, return_index=True)
         return flat[np.sort(first)]
 
-    @property
-    def chains(self) -> list[np.ndarray]:
-        """The nodes of each chain; a closed one repeats its first node at the end."""
-        breaks = np.flatnonzero(self.segments[1:, 0] != self.segments[:-1, 1]) + 1
-        return [np.append(part[:, 0], part[-1, 1]) for part in np.split(self.segments, breaks) if len(part)]
-
     def lengths(self, points: np.ndarray) -> np.ndarray:
         """(n,) length of each segment."""
         return np.linalg.norm(points[self.segments[:, 1]] - points[self.segments[:, 0]], axis=1)

@@ -2,7 +2,7 @@
 """Block-to-block: two soft blocks with non-matching meshes are pressed together."""
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, implicit_dynamic,
-                                           part, plane_strain, contact_surfaces)
+                                           meshes, part, plane_strain, contact_surfaces)
 
 
 def block_grids(n_slave=51, n_master=50, rows=2):
@@ -62,8 +62,7 @@ def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False, implicit=
     plane_strain(deck, 1, 4 if implicit else 1)
     elastic(deck, 1, rho=1000.0, young=1.0e6, poisson=0.0)
     deck.block("The lower face rests (u_y = 0), the upper face moves with a constant velocity.")
-    deck.node_set(1, "lower face of the lower block", lower.lower)
-    deck.spc_set(1, False, True)
+    deck.node_set(1, "lower face of the lower block", lower.lower).spc_set(1, False, True)
     deck.node_set(2, "upper face of the upper block", upper.upper)
     deck.keyword("BOUNDARY_PRESCRIBED_MOTION_SET").card("nsid dof vad lcid sf", 2, 2, 0, 2, 1.0)
     deck.curve(2, "velocity of the upper face", [(0.0, "&v0"), (10.0, "&v0")])
@@ -71,8 +70,5 @@ def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False, implicit=
                "so a lower face runs from left to right, an upper face from right to left.")
     contact_surfaces(deck, ("lower face of the upper block", upper.lower),
                      ("upper face of the lower block", lower.upper), exchanged)
-    deck.block(f"Mesh of the lower block: {n_master * level} x {2 * level} quads.")
-    lower.write(deck, 1)
-    deck.block(f"Mesh of the upper block: {n_slave * level} x {2 * level} quads.")
-    upper.write(deck, 2)
-    return deck.text()
+    return meshes(deck, (f"lower block: {n_master * level} x {2 * level} quads", lower),
+                  (f"upper block: {n_slave * level} x {2 * level} quads", upper))

@@ -4,7 +4,7 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (ALUMINIUM, CONTACT_TYPES, STEEL, elastic, energies_on,
-                                           part, perfectly_plastic, plane_strain, contact_surfaces)
+                                           meshes, part, perfectly_plastic, plane_strain, contact_surfaces)
 
 
 def collision_grids(level):
@@ -85,17 +85,12 @@ def collision(level=1, ctype=2, ngauss=4, exchanged=False):
     deck.card("id styp omega vx vy vz", 2, 2, 0.0, 0.0, "&v0", 0.0)
     deck.card("xc yc zc nx ny nz", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     deck.block("Symmetry at x = 0 (u_x = 0); the plate is clamped at x = 65 mm (u = 0).")
-    deck.node_set(1, "symmetry plane", np.concatenate([plate.left, projectile.left]))
-    deck.spc_set(1, True, False)
-    deck.node_set(2, "clamped end of the plate", plate.right)
-    deck.spc_set(2, True, True)
+    deck.node_set(1, "symmetry plane", np.concatenate([plate.left, projectile.left])).spc_set(1, True, False)
+    deck.node_set(2, "clamped end of the plate", plate.right).spc_set(2, True, True)
     deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
                "so a lower face runs from left to right, an upper face from right to left.")
     contact_surfaces(deck, ("lower face of the projectile", projectile.lower),
                      ("upper face of the plate (0 to 25 mm)", plate.upper[-(20 * level + 1):]),
                      exchanged, True)
-    deck.block(f"Mesh of the plate: {36 * level} x {4 * level} quads.")
-    plate.write(deck, 1)
-    deck.block(f"Mesh of the projectile: {24 * level} x {4 * level} quads.")
-    projectile.write(deck, 2)
-    return deck.text()
+    return meshes(deck, (f"plate: {36 * level} x {4 * level} quads", plate),
+                  (f"projectile: {24 * level} x {4 * level} quads", projectile))

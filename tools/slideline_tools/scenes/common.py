@@ -52,6 +52,14 @@ def energies_on(deck):
     return deck.keyword("CONTROL_ENERGY").card("hgen rwen slnten rylen", 2, 2, 2, 2)
 
 
+def meshes(deck, *bodies):
+    """The mesh of each body, (words, grid), as parts 1, 2 ...; the text of the deck, which ends with them."""
+    for number, (words, grid) in enumerate(bodies, start=1):
+        deck.block(f"Mesh of the {words}.")
+        grid.write(deck, number)
+    return deck.text()
+
+
 def slideline(deck, slave, master):
     """*CONTACT_2D_SLIDELINE between two node sets; type, points and penalty are parameters."""
     deck.keyword("CONTACT_2D_SLIDELINE")

@@ -4,7 +4,7 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (ALUMINIUM, CONTACT_TYPES, STEEL, elastic, energies_on,
-                                           implicit_static, part, plane_strain, contact_surfaces)
+                                           implicit_static, meshes, part, plane_strain, contact_surfaces)
 from slideline_tools.scenes.sliding import stroke
 
 RADIUS = 0.020
@@ -100,11 +100,7 @@ def hertz(level=1, ctype=2, ngauss=4, exchanged=False, static=False):
                "body lies on the left hand.")
     contact_surfaces(deck, ("lower face of the cylinder", round_face),
                      ("upper face of the block", flat_face), exchanged, True)
-    deck.block("Mesh of the block.")
-    block.write(deck, 1)
-    deck.block("Mesh of the cylinder.")
-    cylinder.write(deck, 2)
-    return deck.text()
+    return meshes(deck, ("block", block), ("cylinder", cylinder))
 
 
 def write_run(deck, level, ctype, ngauss, static):
@@ -144,11 +140,9 @@ def write_run(deck, level, ctype, ngauss, static):
 def write_support_and_motion(deck, block, cylinder, static):
     """Rollers below and on the axis of symmetry; the cut of the cylinder moves down."""
     deck.block("The block rests on rollers (u_y = 0); the axis stays straight (u_x = 0).")
-    deck.node_set(1, "lower face of the block", block.lower)
-    deck.spc_set(1, False, True)
+    deck.node_set(1, "lower face of the block", block.lower).spc_set(1, False, True)
     middle = [grid.node[grid.node.shape[0] // 2] for grid in (block, cylinder)]
-    deck.node_set(2, "axis of symmetry", np.concatenate(middle))
-    deck.spc_set(2, True, False)
+    deck.node_set(2, "axis of symmetry", np.concatenate(middle)).spc_set(2, True, False)
     deck.block("The cut of the cylinder moves down." if static else
                "The cut of the cylinder moves down and stays there; velocity "
                "d (1 - cos(2 pi t/t1))/t1.")

@@ -3,7 +3,7 @@
 import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
-from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, part,
+from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, meshes, part,
                                            plane_strain, contact_surfaces)
 
 ANGLE, FIRST_GAP = 30.0, 0.01
@@ -61,8 +61,4 @@ def oblique(ctype=2, ngauss=4, exchanged=False):
     contact_surfaces(deck, ("sides and lower face of the turned block",
                             np.concatenate([turned.left, turned.lower[1:], turned.right[1:]])),
                      ("upper face of the large block", large.upper), exchanged)
-    deck.block("Mesh of the large block: 16 x 6 quads.")
-    large.write(deck, 1)
-    deck.block("Mesh of the turned block: 7 x 5 quads.")
-    turned.write(deck, 2)
-    return deck.text()
+    return meshes(deck, ("large block: 16 x 6 quads", large), ("turned block: 7 x 5 quads", turned))

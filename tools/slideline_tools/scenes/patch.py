@@ -4,7 +4,7 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, implicit_static,
-                                           part, plane_strain, contact_surfaces)
+                                           meshes, part, plane_strain, contact_surfaces)
 
 
 RHO, YOUNG = 1000.0, 1.0e6
@@ -101,11 +101,7 @@ def patch(ctype=2, ngauss=4, exchanged=False, penalty=1.0e6, grids=None, static=
         write_damped(deck, contact, *relaxation(lower, upper, penalty))
     write_bodies(deck, lower, upper, static)
     write_surfaces(deck, lower, upper, exchanged, surfaces)
-    deck.block("Mesh of the lower block.")
-    lower.write(deck, 1)
-    deck.block("Mesh of the upper block.")
-    upper.write(deck, 2)
-    return deck.text()
+    return meshes(deck, ("lower block", lower), ("upper block", upper))
 
 
 def write_surfaces(deck, lower, upper, exchanged, surfaces):
@@ -166,11 +162,9 @@ def write_bodies(deck, lower, upper, static):
     plane_strain(deck, 1, 4 if static else 1)
     elastic(deck, 1, rho=RHO, young=YOUNG, poisson=0.0)
     deck.block("The lower face rests (u_y = 0); u_x = 0 at one lower and one upper node.")
-    deck.node_set(1, "lower face of the lower block", lower.lower)
-    deck.spc_set(1, False, True)
+    deck.node_set(1, "lower face of the lower block", lower.lower).spc_set(1, False, True)
     pins = [lower.lower[len(lower.lower) // 2], upper.upper[len(upper.upper) // 2]]
-    deck.node_set(2, "held in x", pins)
-    deck.spc_set(2, True, False)
+    deck.node_set(2, "held in x", pins).spc_set(2, True, False)
     deck.block("The pressure on the upper face.")
     deck.curve(2, "pressure", [(0.0, 0.0 if static else 1.0), (1.0 if static else 1.0e3, 1.0)])
     deck.keyword("LOAD_SEGMENT")

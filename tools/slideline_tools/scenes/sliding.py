@@ -4,7 +4,7 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (ALUMINIUM, CONTACT_TYPES, STEEL, elastic, energies_on,
-                                           part, perfectly_plastic, plane_strain, rigid,
+                                           meshes, part, perfectly_plastic, plane_strain, rigid,
                                            contact_surfaces)
 
 CENTRE, CROWN_RADIUS, TOP = 0.010, 0.020, 0.002
@@ -93,18 +93,13 @@ def sliding(level=1, ctype=2, ngauss=6, exchanged=False, rigid_die=False):
         deck.comment("steel, elastic")
         elastic(deck, 2, **STEEL)
     deck.block("The lower face of the plate is fixed (u = 0).")
-    deck.node_set(1, "lower face of the plate", plate.lower)
-    deck.spc_set(1, True, True)
+    deck.node_set(1, "lower face of the plate", plate.lower).spc_set(1, True, True)
     write_motion(deck, die, rigid_die)
     deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
                "so a lower face runs from left to right, an upper face from right to left.")
     contact_surfaces(deck, ("lower face of the die", die.lower),
                      ("upper face of the plate", plate.upper), exchanged, True)
-    deck.block(f"Mesh of the plate: {36 * level} x {4 * level} quads.")
-    plate.write(deck, 1)
-    deck.block(f"Mesh of the die: {18 * level} x {3 * level} quads.")
-    die.write(deck, 2)
-    return deck.text()
+    return meshes(deck, (f"plate: {36 * level} x {4 * level} quads", plate), (f"die: {18 * level} x {3 * level} quads", die))
 
 
 def write_motion(deck, die, rigid_die=False):

@@ -39,7 +39,6 @@ class Measure:
     key: str
     title: str
     known: float = 0.0
-    referenced: bool = False
 
 
 @dataclasses.dataclass(frozen=True)
@@ -220,16 +219,16 @@ SCENES = {
         levels=(1, 2, 4), cost=0.2),
     "sliding": Scene(
         "Sliding", scenes.sliding, lambda level: 10.0e9 / level, sliding_lengths(), judge_sliding,
-        (Measure("force_error", "force, rms difference over the mean", referenced=True),
+        (Measure("force_error", "force, rms difference over the mean"),
          Measure("roughness", "roughness of the force over the mean")),
         levels=(1, 2, 3), options=sliding_options, references=(2, 3, 6), quick_references=(1, 2),
         cost=1.4, power=2.5),
     "collision": Scene(
         "Collision", scenes.collision, lambda level: 1.0e9 / level, (0.020 / 24.0, 0.025 / 20.0),
         judge_collision,
-        (Measure("plastic_error", "plastic work by column, difference", referenced=True),
-         Measure("total_work_error", "plastic work in total, difference", referenced=True),
-         Measure("rebound_error", "rebound, difference over the impact", referenced=True),
+        (Measure("plastic_error", "plastic work by column, difference"),
+         Measure("total_work_error", "plastic work in total, difference"),
+         Measure("rebound_error", "rebound, difference over the impact"),
          Measure("energy_error", "energy ratio, largest deviation from 1")),
         levels=(1, 2, 3, 4), quick_levels=(1, 2), references=(2, 4, 6),
         quick_references=(1, 2, 4), cost=0.2, power=2.3),
