@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 from slideline_tools import UserError, counting, scenes
-from slideline_tools.studies.framework import counted, runner, table
-from slideline_tools.studies.framework.job import Job, Study
+from slideline_tools.studies.framework import runner, table
+from slideline_tools.studies.framework.job import Job, Study, counted_job
 from slideline_tools.studies.framework.progress import Progress
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -145,7 +145,7 @@ def test_counted_jobs_are_rows_of_their_own(tmp_path, monkeypatch):
     monkeypatch.setattr(runner.Sweep, "command", lambda sweep, job, deck: [str(plain)] if not job.counted else [
         sys.executable, str(stand_in), str(sweep.run_folder(job)), str(sweep.counted)])
     timed = Job("a", "deck", labels={"scene": "s", "level": 1, "type": 1}, alone=True, turns=3)
-    jobs = [timed, counted.counted_job(timed, ("endtim=1",))]
+    jobs = [timed, counted_job(timed, ("endtim=1",))]
     assert (jobs[1].turns, jobs[1].alone, jobs[1].options) == (1, False, ("endtim=1",))
     study = Study("tiny", None, lambda job, folder: {"seconds": 1.0}, None)
 
@@ -164,6 +164,6 @@ def test_counted_jobs_are_rows_of_their_own(tmp_path, monkeypatch):
 
 def test_who_counted_and_what_was_cut_short():
     runs = pd.DataFrame({"state": [table.COUNTED], "scene": ["s"], "shortened": ["endtim=1"], "counted_by": [counting.CALLGRIND]})
-    text = counted.who_counted(runs)
+    text = table.who_counted(runs)
     assert "Counted by callgrind, x86-64-v3" in text and text.endswith("Cut short: s (endtim=1).")
-    assert "No instructions were counted" in counted.who_counted(runs[:0])
+    assert "No instructions were counted" in table.who_counted(runs[:0])

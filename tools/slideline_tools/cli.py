@@ -26,7 +26,7 @@ OFFERED = {"--field": ("plastic_strain", "mises", "pressure", "stress", "displac
                        "contact_slip", "contact_state"),
            "--show": pictures.WHAT, "--measures": ("values", "peak", "impulse", "final")}
 #: options that take files; "" are words without an option
-FILES = ("", "--output", "--program", "--root")
+FILES = ("", "--output", "--program")
 
 
 def build_parser():

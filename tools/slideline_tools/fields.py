@@ -55,15 +55,11 @@ class ScalarField:
     def limits(self, states=None):
         """(lowest, highest) over the given states; about zero if the field has both signs."""
         values = self.values if states is None else self.values[states]
-        low, high = float(np.min(values)), float(np.max(values))
+        low, high = min(float(np.min(values)), 0.0), max(float(np.max(values)), 0.0)
         if low < 0.0 < high:
             high = max(-low, high)
             return -high, high
-        if low >= 0.0:
-            low = 0.0
-        elif high <= 0.0:
-            high = 0.0
-        return (low, high) if high > low else (low, low + 1.0)
+        return (low, high) if high > low else (0.0, 1.0)
 
 
 def scalar_field(results, name):
@@ -97,7 +93,6 @@ def pick_component(base, values, component, names, text):
 
 def default_field(results):
     """Name of the field worth showing first: plastic strain if there is any, else mises."""
-    if "plastic_strain" in results.cell_fields:
-        if np.any(results.cell_field("plastic_strain") > 0.0):
-            return "plastic_strain"
+    if "plastic_strain" in results.cell_fields and np.any(results.cell_field("plastic_strain") > 0.0):
+        return "plastic_strain"
     return "mises" if "mises" in results.cell_fields else "displacement"

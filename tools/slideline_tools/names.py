@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What to say of a name that does not exist, objects in one line, and numbers of things."""
+"""What to say of a name that does not exist, objects in one line, numbers of things and numbers in texts."""
 import difflib
 import typing
+
+from slideline_tools import UserError
 
 #: least likeness (difflib) of a name that is offered instead
 ALIKE = 0.65
@@ -31,3 +33,11 @@ def one_line(words: str) -> str:
 def counted(count: int, what: str) -> str:
     """A number of things: `1 node`, `2 nodes`."""
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
+def number(what: str, text: str) -> float:
+    """The number in a text; `what` it is for."""
+    try:
+        return float(text)
+    except ValueError:
+        raise UserError(f"{what}: '{text}' is no number") from None

@@ -13,6 +13,7 @@ from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
 from slideline_tools import UserError
 from slideline_tools.fields import default_field, largest, scalar_field, without_round_off
+from slideline_tools.names import number
 from slideline_tools.walls import draw_walls, walls_of
 
 # Pictures go to files, without a window; except in a notebook, and where $MPLBACKEND says otherwise.
@@ -220,18 +221,11 @@ def parse_history(request):
         name, equals, value = entry.partition("=")
         if not equals:
             raise UserError(f"'{entry}': expected COLUMN=VALUE after @")
-        wanted[name] = value if name == "side" else number(value)
+        wanted[name] = value if name == "side" else number(request, value)
     names = [column for column in columns.split(",") if column]
     if not table or not names:
         raise UserError(f"'{request}': expected TABLE:COLUMN,COLUMN[@ENTITY=VALUE]")
     return table, names, wanted
-
-
-def number(text):
-    try:
-        return float(text)
-    except ValueError:
-        raise UserError(f"'{text}' is not a number") from None
 
 
 def draw_history(axes, results, request):
@@ -342,9 +336,3 @@ def report_requests(results):
     elif "nodout" in results.histories and len(results.history("nodout")):
         panels.append(("nodout:uy", "displacement in y"))
     return panels
-
-
-def save(figure, path):
-    """Write a figure to a PNG, PDF or SVG file."""
-    figure.savefig(path)
-    plt.close(figure)

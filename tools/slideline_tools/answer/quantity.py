@@ -7,7 +7,7 @@ import numpy as np
 from slideline_tools import UserError
 from slideline_tools.fields import scalar_field
 from slideline_tools.histories import TEXT_COLUMNS, trapezoid
-from slideline_tools.names import missing
+from slideline_tools.names import missing, number
 from slideline_tools.program import Outcome
 
 MEASURES = ("largest", "smallest", "mean", "impulse", "end")
@@ -125,14 +125,6 @@ def weights_at(x, cells, parts, point, at_nodes: bool) -> np.ndarray:
     centre = away.mean(axis=0)
     weights[near] = np.array([1.0, *-centre]) @ np.linalg.pinv(np.column_stack([np.ones(len(near)), away - centre]))
     return weights
-
-
-def number(what: str, text: str) -> float:
-    """A number of a quantity."""
-    try:
-        return float(text)
-    except ValueError:
-        raise UserError(f"{what}: '{text}' is no number") from None
 
 
 def parse(text: str) -> Quantity:

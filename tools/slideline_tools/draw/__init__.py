@@ -35,7 +35,9 @@ def draw(deck: str | os.PathLike, output: str | os.PathLike, program: str | os.P
          zoom: typing.Sequence[float] | None = None) -> Model:
     """Write the picture of a deck (or of a results folder) and give its model."""
     from slideline_tools.draw.picture import model_figure
-    from slideline_tools.plots import save
+    from slideline_tools.plots import plt
     model = resolve(deck, program, overrides)
-    save(model_figure(model, show, zoom), files.output(output, [deck]))
+    figure = model_figure(model, show, zoom)
+    figure.savefig(files.output(output, [deck]))
+    plt.close(figure)
     return model

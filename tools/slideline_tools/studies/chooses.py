@@ -14,9 +14,8 @@ import pandas as pd
 from slideline_tools import UserError
 from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.studies.common import label, markdown_table, write_page
-from slideline_tools.studies.framework.counted import counted_job, who_counted
-from slideline_tools.studies.framework.job import Job, Study
-from slideline_tools.studies.framework.table import counted, finished
+from slideline_tools.studies.framework.job import Job, Study, counted_job
+from slideline_tools.studies.framework.table import counted, finished, who_counted
 from slideline_tools.studies.speed_accuracy.points import errors_of
 from slideline_tools.studies.speed_accuracy.scenes import SCENES, node_penalty
 

@@ -14,8 +14,7 @@ import pandas as pd
 from slideline_tools import UserError
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.studies.common import markdown_table, save_small, write_page
-from slideline_tools.studies.framework.counted import who_counted
-from slideline_tools.studies.framework.table import COUNTED
+from slideline_tools.studies.framework.table import COUNTED, who_counted
 
 PEERS = ("akantu", "KratosMultiphysics", "KratosStructuralMechanicsApplication",
          "KratosContactStructuralMechanicsApplication", "CalculiX", "OpenRadioss", "slideline",

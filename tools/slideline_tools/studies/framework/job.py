@@ -101,6 +101,13 @@ class Study:
     build: str = "release"
 
 
+def counted_job(job, options=()):
+    """The job again, counted once; `options` shorten it."""
+    return dataclasses.replace(job, name=f"{job.name}_counted", options=(*job.options, *options),
+                               labels={**job.labels, "shortened": " ".join(options)}, alone=False, turns=1,
+                               once=True, counted=True, limit=None, cost=50.0 * job.cost)
+
+
 def interleave(jobs, rounds):
     """All jobs in turn, then the next round, so that a slow spell of the machine hits all alike."""
     runs, count = [], {job.name: 0 for job in jobs}

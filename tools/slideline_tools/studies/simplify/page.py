@@ -6,8 +6,7 @@ from slideline_tools import UserError
 from slideline_tools.contact_types import TYPES
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, plt
 from slideline_tools.studies.common import label, markdown_table, save_small, write_page
-from slideline_tools.studies.framework.counted import who_counted
-from slideline_tools.studies.framework.table import counted, finished
+from slideline_tools.studies.framework.table import counted, finished, who_counted
 from slideline_tools.studies.framework.times import quartile_distance
 
 PHASES = ["elements", "nodes", "contact", "output", "input"]

@@ -14,8 +14,7 @@ import pandas as pd
 
 from slideline_tools import scenes
 from slideline_tools.histories import read_csv
-from slideline_tools.studies.framework.counted import counted_job
-from slideline_tools.studies.framework.job import ALL_TYPES, Job, Study
+from slideline_tools.studies.framework.job import ALL_TYPES, Job, Study, counted_job
 from slideline_tools.studies.framework.runner import RECORD
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.framework.times import phases
