@@ -136,13 +136,10 @@ def deck_of(mesh: PlaneMesh, title: str) -> Deck:
         deck.keyword("MAT_ELASTIC").card("mid ro e pr", pid, 7850.0, 2.1e11, 0.3)
     add_sets(deck, mesh)
     deck.block("The mesh.")
-    deck.keyword("NODE").table("nid x y", [8, 16, 16],
-                               [(n + 1, float(x), float(y)) for n, (x, y) in enumerate(mesh.points)])
+    deck.nodes(range(1, len(mesh.points) + 1), mesh.points)
     faces = [(pid, face) for pid, some in enumerate(mesh.parts.values(), start=1) for face in some]
-    rows = [(eid, pid, *(n + 1 for n in (*face, face[-1])[:4]))
-            for eid, (pid, face) in enumerate(faces, start=1)]
-    deck.keyword("ELEMENT_SHELL").table("eid pid n1 n2 n3 n4", [8] * 6, rows)
-    return deck
+    quads = [[n + 1 for n in (*face, face[-1])[:4]] for _, face in faces]
+    return deck.quads(range(1, len(faces) + 1), [pid for pid, _ in faces], quads)
 
 
 def add_sets(deck: Deck, mesh: PlaneMesh) -> None:

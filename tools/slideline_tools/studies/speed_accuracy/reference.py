@@ -69,24 +69,17 @@ def collision_outcome(folder):
             "rebound_error": np.array([rebound / IMPACT_SPEED])}
 
 
-def force_distance(one, other, reference):
-    """Root mean square of the difference over the mean force."""
-    return float(np.sqrt(np.mean((one - other) ** 2)) / np.mean(reference))
-
-
 def work_distance(one, other, reference):
     """Sum of the differences over the sum."""
     return float(np.abs(one - other).sum() / reference.sum())
 
 
-def plain_distance(one, other, _reference):
-    """The difference."""
-    return float(np.abs(one - other)[0])
-
-
 OUTCOMES = {"sliding": sliding_force, "collision": collision_outcome}
-DISTANCES = {"force_error": force_distance, "plastic_error": work_distance,
-             "total_work_error": work_distance, "rebound_error": plain_distance}
+#: Of two outcomes, over a reference.
+DISTANCES = {
+    "force_error": lambda one, other, reference: float(np.sqrt(np.mean((one - other) ** 2)) / np.mean(reference)),
+    "plastic_error": work_distance, "total_work_error": work_distance,
+    "rebound_error": lambda one, other, _: float(np.abs(one - other)[0])}
 
 
 # ---- columns -----------------------------------------------------------------------------------
