@@ -20,11 +20,6 @@ EPILOG = f"""Examples:
 
 A RUN is the folder of its results, or any file in it. Every COMMAND explains its options with
 --help. Exit status: 0 done, 1 a comparison failed, 2 it could not be done."""
-#: words that are offered for options which take others too
-OFFERED = {"--field": ("plastic_strain", "mises", "pressure", "stress", "displacement", "velocity",
-                       "contact_force", "contact_pressure", "gap", "contact_traction",
-                       "contact_slip", "contact_state"),
-           "--show": pictures.WHAT, "--measures": ("values", "peak", "impulse", "final")}
 #: options that take files; "" are words without an option
 FILES = ("", "--output", "--program")
 
@@ -58,11 +53,14 @@ def parsers(parser):
 def completion(options):
     """Print a script that completes the commands, options and choices of slideline-tools."""
     import shtab
+    from slideline_tools.fields import LABELS
+    # Words that are offered for options which take others too.
+    offered = {"--field": LABELS, "--show": pictures.WHAT, "--measures": ("values", "peak", "impulse", "final")}
     whole = build_parser()
     for action in (action for one in parsers(whole) for action in one._actions):
         name = (action.option_strings or [""])[0]
-        if name in OFFERED:
-            action.choices = OFFERED[name]
+        if name in offered:
+            action.choices = tuple(offered[name])
         elif name in FILES and action.choices is None:
             action.complete = shtab.FILE
     print(shtab.complete(whole, options.shell))

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Decks of the study simplify: scenes with more than they need."""
-import functools
-
 import numpy as np
 
 from slideline_tools.decks import Deck, field
@@ -22,13 +20,11 @@ def exchanged(deck, old, new):
     return deck.replace(old, new)
 
 
-def written(*calls):
-    """Text of cards: each call is (method of Deck by name, or function of a Deck, arguments ...)."""
+def written(write):
+    """Text of the cards that a function writes into a Deck."""
     deck = Deck("")
     start = len(deck.lines)
-    for call, *arguments in calls:
-        write = getattr(Deck, call) if isinstance(call, str) else call
-        write(deck, *arguments)
+    write(deck)
     return "\n".join(deck.lines[start:]) + "\n"
 
 
@@ -37,8 +33,7 @@ def full_collision(level):
     plate, projectile = collision_grids(level)
     deck = collision(level)
     held = np.concatenate([plate.left, projectile.left])
-    deck = exchanged(deck, written(("node_set", 1, "symmetry plane", held),
-                                   ("spc_set", 1, True, False)), "")
+    deck = exchanged(deck, written(lambda cards: cards.node_set(1, "symmetry plane", held).spc_set(1, True, False)), "")
     for number, heading, nodes, whole in (
             (2, "clamped end of the plate", plate.right,
              np.concatenate([plate.right, MIRRORED + plate.right])),
@@ -48,8 +43,8 @@ def full_collision(level):
             (4, "master: upper face of the plate (0 to 25 mm)", plate.upper[-(20 * level + 1):],
              np.concatenate([plate.upper[-(20 * level + 1):],
                              MIRRORED + plate.upper[-2:-(20 * level + 2):-1]]))):
-        deck = exchanged(deck, written(("node_set", number, heading, nodes)),
-                         written(("node_set", number, heading, whole)))
+        deck = exchanged(deck, written(lambda cards: cards.node_set(number, heading, nodes)),
+                         written(lambda cards: cards.node_set(number, heading, whole)))
     return exchanged(deck, "*END\n", mirror(plate, 1) + mirror(projectile, 2) + "*END\n")
 
 
@@ -64,14 +59,13 @@ def mirror(grid, part):
               for point in grid.points[1:].reshape(-1, 2)]
     lines = [f"{number},{-x!r},{y!r}" for number, (x, y) in zip(of_left[1:].ravel(), places)]
     return "\n".join(["*NODE", *lines]) + "\n" + written(
-        ("quads", MIRRORED + grid.element.ravel(), part, quads.reshape(-1, 4)))
+        lambda cards: cards.quads(MIRRORED + grid.element.ravel(), part, quads.reshape(-1, 4)))
 
 
 def plastic_instead(deck, number, material):
     """The deck with an elastic-plastic law that never yields in place of an elastic one."""
-    law = functools.partial(perfectly_plastic, yield_stress=UNREACHABLE, **material)
-    return exchanged(deck, written((functools.partial(elastic, **material), number)),
-                     written((law, number)))
+    return exchanged(deck, written(lambda cards: elastic(cards, number, **material)),
+                     written(lambda cards: perfectly_plastic(cards, number, yield_stress=UNREACHABLE, **material)))
 
 
 def awake(deck):
@@ -80,8 +74,8 @@ def awake(deck):
     card = [k for k, line in enumerate(lines) if line == "*CONTACT_2D_SLIDELINE"]
     if len(card) != 1:
         raise ValueError("a deck with one *CONTACT_2D_SLIDELINE is expected")
-    second = written(("card", "tbirth tdeath punit pent vdc ipf freq srch",
-                      0.0, 0.0, 0, 0.0, 0.0, 0, 1, 0.0)).splitlines()
+    second = written(lambda cards: cards.card("tbirth tdeath punit pent vdc ipf freq srch",
+                                              0.0, 0.0, 0, 0.0, 0.0, 0, 1, 0.0)).splitlines()
     return "\n".join(lines[:card[0] + 3] + second + lines[card[0] + 3:]) + "\n"
 
 
@@ -99,5 +93,5 @@ def wider_collision(level):
     """The collision with a projectile a little wider, so that no two nodes face each other."""
     projectile = collision_grids(level)[1]
     points = projectile.points.reshape(-1, 2)
-    return exchanged(collision(level), written(("nodes", projectile.node.ravel(), points)),
-                     written(("nodes", projectile.node.ravel(), points * (WIDER, 1.0))))
+    return exchanged(collision(level), written(lambda cards: cards.nodes(projectile.node.ravel(), points)),
+                     written(lambda cards: cards.nodes(projectile.node.ravel(), points * (WIDER, 1.0))))
