@@ -343,12 +343,12 @@ def curves(history: History, title: str, columns: list[str]) -> list[Block]:
 # ---- the model ----------------------------------------------------------------------------------
 
 def model(run: Gathered) -> list[Block]:
-    """Parts, materials and interfaces as the program understood them."""
-    return parts(run) + materials(run) + interfaces(run)
+    """Parts with their materials, and interfaces, as the program understood them."""
+    return parts(run) + interfaces(run)
 
 
 def parts(run: Gathered) -> list[Block]:
-    """The parts with what they hold at the end."""
+    """The parts with their materials and what they hold at the end."""
     known = run.model.parts if run.model else {}
     matsum = run.rows("matsum")
     sums = ("mass", "kinetic", "internal", "hourglass", "momentum_x", "momentum_y")
@@ -356,21 +356,13 @@ def parts(run: Gathered) -> list[Block]:
     for number, part in sorted(known.items()):
         last = matsum.where(part=number) if matsum else None
         rows.append([number, part.title, figures(part.n_element), part.material,
-                     part.law, *(figures(last[name][-1], 5) if last else "–" for name in sums)])
-    head = ["part", "title", "elements", "material", "law",
+                     part.law, *(figures(value, 5) for value in (part.density, part.young, part.poisson)),
+                     *(figures(last[name][-1], 5) if last else "–" for name in sums)])
+    head = ["part", "title", "elements", "material", "law", "density", "Young's modulus", "Poisson's ratio",
             *(name.replace("_", " ") for name in sums)]
     note = ("note", "Energies and momenta are those of the last row of matsum.")
     return [("heading", "Parts"), ("table", Table(head, rows)),
             *([note] if matsum else [])] if rows else []
-
-
-def materials(run: Gathered) -> list[Block]:
-    """The materials of the parts."""
-    found = {part.material: part for part in run.model.parts.values()} if run.model else {}
-    rows = [[number, one.law, *(figures(value, 5) for value in (one.density, one.young, one.poisson))]
-            for number, one in sorted(found.items())]
-    head = ["material", "law", "density", "Young's modulus", "Poisson's ratio"]
-    return [("heading", "Materials"), ("table", Table(head, rows))] if rows else []
 
 
 def interfaces(run: Gathered) -> list[Block]:

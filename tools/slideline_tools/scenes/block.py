@@ -66,8 +66,6 @@ def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False, implicit=
     deck.node_set(2, "upper face of the upper block", upper.upper)
     deck.keyword("BOUNDARY_PRESCRIBED_MOTION_SET").card("nsid dof vad lcid sf", 2, 2, 0, 2, 1.0)
     deck.curve(2, "velocity of the upper face", [(0.0, "&v0"), (10.0, "&v0")])
-    deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
-               "so a lower face runs from left to right, an upper face from right to left.")
     contact_surfaces(deck, ("lower face of the upper block", upper.lower),
                      ("upper face of the lower block", lower.upper), exchanged)
     return meshes(deck, (f"lower block: {n_master * level} x {2 * level} quads", lower),

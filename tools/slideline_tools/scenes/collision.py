@@ -87,8 +87,6 @@ def collision(level=1, ctype=2, ngauss=4, exchanged=False):
     deck.block("Symmetry at x = 0 (u_x = 0); the plate is clamped at x = 65 mm (u = 0).")
     deck.node_set(1, "symmetry plane", np.concatenate([plate.left, projectile.left])).spc_set(1, True, False)
     deck.node_set(2, "clamped end of the plate", plate.right).spc_set(2, True, True)
-    deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
-               "so a lower face runs from left to right, an upper face from right to left.")
     contact_surfaces(deck, ("lower face of the projectile", projectile.lower),
                      ("upper face of the plate (0 to 25 mm)", plate.upper[-(20 * level + 1):]),
                      exchanged, True)

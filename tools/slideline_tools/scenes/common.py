@@ -6,6 +6,8 @@ STEEL = dict(rho=7850.0, young=210.0e9, poisson=0.3)
 ALUMINIUM = dict(rho=2700.0, young=69.0e9, poisson=0.33, yield_stress=276.0e6)
 
 CONTACT_TYPES = ", ".join(f"{number} {name}" for number, name in PROGRAM_NAMES.items())
+WALKED = ("The two surfaces as node sets in walking order: the body lies on the left hand, so a lower face runs from left to right, "
+          "an upper face from right to left.")
 
 
 def part(deck, number, heading, section, material):
@@ -67,9 +69,10 @@ def slideline(deck, slave, master):
                      -slave, -master, "&ctype", "&ngauss", "&pen", 0.0, 0.0, 0.0)
 
 
-def contact_surfaces(deck, slave, master, exchanged=False, note=False):
-    """Both surfaces, (words, nodes), as node sets 3 and 4, and the contact between them;
+def contact_surfaces(deck, slave, master, exchanged=False, note=False, about=WALKED):
+    """Both surfaces, (words, nodes), as node sets 3 and 4, and the contact between them, below a line `about` them;
     `exchanged`: the roles change, not the sets."""
+    deck.block(about)
     roles = ("master", "slave") if exchanged else ("slave", "master")
     for number, role, (words, nodes) in zip((3, 4), roles, (slave, master)):
         deck.node_set(number, f"{role}: {words}", nodes)

@@ -96,10 +96,9 @@ def hertz(level=1, ctype=2, ngauss=4, exchanged=False, static=False):
     elastic(deck, 1, *(ALUMINIUM[key] for key in ("rho", "young", "poisson")))
     elastic(deck, 2, **STEEL)
     write_support_and_motion(deck, block, cylinder, static)
-    deck.block("The two surfaces, their evenly divided parts, as node sets in walking order: the "
-               "body lies on the left hand.")
     contact_surfaces(deck, ("lower face of the cylinder", round_face),
-                     ("upper face of the block", flat_face), exchanged, True)
+                     ("upper face of the block", flat_face), exchanged, True,
+                     "The two surfaces, their evenly divided parts, as node sets in walking order: the body lies on the left hand.")
     return meshes(deck, ("block", block), ("cylinder", cylinder))
 
 

@@ -56,9 +56,9 @@ def oblique(ctype=2, ngauss=4, exchanged=False):
     deck.keyword("INITIAL_VELOCITY_GENERATION")
     deck.card("id styp omega vx vy vz", 2, 2, 0.0, "&vx", "&vy", 0.0)
     deck.card("xc yc zc nx ny nz", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    deck.block("The two surfaces as node sets in walking order; that of the turned block is its left "
-               "side, its lower face and its right side.")
     contact_surfaces(deck, ("sides and lower face of the turned block",
                             np.concatenate([turned.left, turned.lower[1:], turned.right[1:]])),
-                     ("upper face of the large block", large.upper), exchanged)
+                     ("upper face of the large block", large.upper), exchanged, about=(
+                         "The two surfaces as node sets in walking order; that of the turned block is its left side, its lower face "
+                         "and its right side."))
     return meshes(deck, ("large block: 16 x 6 quads", large), ("turned block: 7 x 5 quads", turned))

@@ -113,9 +113,8 @@ def write_surfaces(deck, lower, upper, exchanged, surfaces):
         deck.keyword("CONTACT_2D_SLIDELINE")
         deck.card("surfa surfb ctype ngauss pen", 3, 0, "&ctype", "&ngauss", "&pen")
         return
-    deck.block("The two surfaces as node sets in walking order.")
     contact_surfaces(deck, ("lower face of the upper block", upper.lower),
-                     ("upper face of the lower block", lower.upper), exchanged)
+                     ("upper face of the lower block", lower.upper), exchanged, about="The two surfaces as node sets in walking order.")
     if surfaces == "tied":
         deck.card("tbirth", 0.0)
         deck.card("vc tfac tie", 0.0, 1.0, 1)

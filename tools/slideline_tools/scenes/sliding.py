@@ -95,8 +95,6 @@ def sliding(level=1, ctype=2, ngauss=6, exchanged=False, rigid_die=False):
     deck.block("The lower face of the plate is fixed (u = 0).")
     deck.node_set(1, "lower face of the plate", plate.lower).spc_set(1, True, True)
     write_motion(deck, die, rigid_die)
-    deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
-               "so a lower face runs from left to right, an upper face from right to left.")
     contact_surfaces(deck, ("lower face of the die", die.lower),
                      ("upper face of the plate", plate.upper), exchanged, True)
     return meshes(deck, (f"plate: {36 * level} x {4 * level} quads", plate), (f"die: {18 * level} x {3 * level} quads", die))
