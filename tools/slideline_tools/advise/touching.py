@@ -3,7 +3,7 @@
 import numpy as np
 
 from slideline_tools.advise.report import Advice
-from slideline_tools.draw.surface import Surface
+from slideline_tools.draw.model import Surface
 
 # Part of the run without contact from which TBIRTH and TDEATH are worth a word.
 IDLE_TIME = 0.2

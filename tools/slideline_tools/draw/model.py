@@ -19,7 +19,6 @@ import h5py
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.draw.surface import Surface
 from slideline_tools.names import counted
 from slideline_tools.program import find_program, not_run
 from slideline_tools.results import Results, read
@@ -76,6 +75,31 @@ class NodeSet:
     def label(self) -> str:
         """Words for a reader."""
         return labelled("set", self)
+
+
+@dataclasses.dataclass
+class Surface:
+    """`segments` (n, 2): indices of both ends, in walking order, chain after chain: counter-clockwise round the body, so that it
+    lies on the left and the outward normal of the unit tangent t is (t_y, -t_x)."""
+
+    segments: np.ndarray
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """All nodes in walking order, each once."""
+        flat = self.segments.ravel()
+        _, first = np.unique(flat, return_index=True)
+        return flat[np.sort(first)]
+
+    def lengths(self, points: np.ndarray) -> np.ndarray:
+        """(n,) length of each segment."""
+        return np.linalg.norm(points[self.segments[:, 1]] - points[self.segments[:, 0]], axis=1)
+
+    def normals(self, points: np.ndarray) -> np.ndarray:
+        """(n, 2) outward unit normals."""
+        tangent = points[self.segments[:, 1]] - points[self.segments[:, 0]]
+        tangent = tangent / np.maximum(self.lengths(points), 1.0e-300)[:, None]
+        return np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
 
 
 @dataclasses.dataclass

@@ -10,8 +10,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from slideline_tools.draw.model import Arrows, Model
-from slideline_tools.draw.surface import Surface
+from slideline_tools.draw.model import Arrows, Model, Surface
 from slideline_tools.names import counted
 from slideline_tools.plots import STYLE, edge_width
 
