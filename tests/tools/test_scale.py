@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from slideline_tools.studies.framework.job import Options
-from slideline_tools.studies.scale import page as scale, study, tiles as scale_tiles
+from slideline_tools.studies.scale import study, tiles as scale_tiles
 from slideline_tools.studies.scale.tiles import grid_mesh, ring_mesh
 
 
@@ -47,7 +47,7 @@ def test_a_slot_goes_to_a_process_once():
 
 def test_ranges_are_even_as_far_as_tiles_allow():
     assert list(scale_tiles.ranges(np.full(6, 100), 3)) == [0, 0, 1, 1, 2, 2]
-    assert scale.load_of(10 ** 6, 64) == pytest.approx(31 / (1954 / 64))
+    assert study.load_of(10 ** 6, 64) == pytest.approx(31 / (1954 / 64))
 
 
 def test_a_ring_is_closed():
@@ -60,14 +60,14 @@ def test_a_ring_is_closed():
 
 
 def test_efficiency_is_one_where_nothing_is_exchanged_and_falls(monkeypatch):
-    monkeypatch.setattr(scale, "NETWORKS", {"free": (0.0, 1.0e30), **scale.NETWORKS})
-    assert scale.efficiency(512 * 64, 64, "free", (4, 4.0), False) == pytest.approx(1.0)
-    by_ranks = [scale.efficiency(10 ** 7, n, "fast", (4, 4.0), False) for n in (2, 16, 256, 1024)]
+    monkeypatch.setattr(study, "NETWORKS", {"free": (0.0, 1.0e30), **study.NETWORKS})
+    assert study.efficiency(512 * 64, 64, "free", (4, 4.0), False) == pytest.approx(1.0)
+    by_ranks = [study.efficiency(10 ** 7, n, "fast", (4, 4.0), False) for n in (2, 16, 256, 1024)]
     assert by_ranks == sorted(by_ranks, reverse=True) and by_ranks[-1] < 1.0
     # All compute the contact: no more than one over its share.
-    share = 1e-9 * scale.CONTACT_NS * (10 ** 7 / 2) ** 0.5
-    one = 1e-9 * scale.STEP_NS * 10 ** 7 + share
-    assert scale.efficiency(10 ** 7, 1024, "free", (4, 4.0), True) < one / (1024 * share)
+    share = 1e-9 * study.CONTACT_NS * (10 ** 7 / 2) ** 0.5
+    one = 1e-9 * study.STEP_NS * 10 ** 7 + share
+    assert study.efficiency(10 ** 7, 1024, "free", (4, 4.0), True) < one / (1024 * share)
 
 
 def test_jobs_and_what_the_log_counts(tmp_path):
@@ -83,11 +83,11 @@ def test_jobs_and_what_the_log_counts(tmp_path):
 def test_page_says_whether_the_tiles_explain_the_counts(monkeypatch, tmp_path, plain_pictures, most, reported):
     """A strip on four processes sends 96 bytes from those in the middle."""
     monkeypatch.setattr(scale_tiles, "MESHES", {"strip": lambda: grid_mesh(2048, 2, 204.8, 0.2)})
-    scale.all_cuts.cache_clear()
+    study.all_cuts.cache_clear()
     table = pd.DataFrame([{"scene": "strip", "elements": 4096, "ranks": 4, "state": "finished", "messages": 1.5,
                            "most_messages": 2, "bytes": 72, "most_bytes": most, "bytes_to_all": 80}])
-    scale.page(table, tmp_path)
-    scale.chart(table, tmp_path)
-    scale.all_cuts.cache_clear()
+    study.page(table, tmp_path)
+    study.chart(table, tmp_path)
+    study.all_cuts.cache_clear()
     assert f"| strip | 4096 | 4 | 1.5 | 2 | 72 | {most:g} | 80 | {reported} |" in (tmp_path / "studies/scale.md").read_text()
     assert (tmp_path / "scale.png").exists()

@@ -12,7 +12,7 @@ from slideline_tools import scenes
 from slideline_tools.histories import History
 from slideline_tools.studies import __main__ as command
 from slideline_tools.studies.framework.job import Options
-from slideline_tools.studies.simplify import compare, decks as simplify_decks, page as pages, study as simplify
+from slideline_tools.studies.simplify import compare, decks as simplify_decks, study as simplify
 
 LEVEL = 2
 
@@ -129,21 +129,21 @@ def test_medians_and_shares_of_processor_time():
         return pd.DataFrame(rows).assign(state="finished", variant="a", level=1, elements=5.0, nodes=0.0, input=0.0,
                                          computing=10.0)
 
-    runs = pages.medians_of(table((1.0, 10.0, 4.0), (3.0, 10.0, 2.0), (2.0, 20.0, 2.0))).loc["a", 1]
+    runs = simplify.medians_of(table((1.0, 10.0, 4.0), (3.0, 10.0, 2.0), (2.0, 20.0, 2.0))).loc["a", 1]
     assert runs["seconds"] == 2.0 and runs["elements"] == pytest.approx(2.0 * 15.0 / 40.0)
     assert runs["contact"] == pytest.approx(2.0 * 8.0 / 40.0) and runs["output"] == pytest.approx(2.0 * 10.0 / 40.0)
     assert runs["spread"] == pytest.approx(0.5)
-    assert pages.medians_of(table((1.0, 10.0, 4.0), (1.0, 10.0, 0.1))).loc[("a", 1), "contact"] == 0.1
+    assert simplify.medians_of(table((1.0, 10.0, 4.0), (1.0, 10.0, 0.1))).loc[("a", 1), "contact"] == 0.1
 
 
 def test_differences_in_words():
-    assert [pages.small_share(value) for value in (None, 0.0, 0.0123, 2e-13)] == ["", "the same", "1.2 %", "2e-13"]
+    assert [simplify.small_share(value) for value in (None, 0.0, 0.0123, 2e-13)] == ["", "the same", "1.2 %", "2e-13"]
 
 
 def test_all_that_is_compared_is_run():
     names = set(simplify.variants())
     assert {one.against[0] for one in simplify.variants().values()} - {""} <= names
-    assert {name for step in pages.STEPS for name in step[1:]} <= names
+    assert {name for step in simplify.STEPS for name in step[1:]} <= names
 
 
 def test_types_that_are_not_asked_for_do_not_run():

@@ -15,7 +15,7 @@ from slideline_tools.decks import Grid
 from slideline_tools.histories import History, energy_made
 from slideline_tools.studies.common import verification
 from slideline_tools.studies.framework.job import Options
-from slideline_tools.studies.stability import measures, page as pages, study as stability
+from slideline_tools.studies.stability import measures, study as stability
 from slideline_tools.studies.stability.scenes import SCENES
 
 springs = verification(".", "springs").springs
@@ -116,7 +116,7 @@ def table_of(*rows):
 def made_table():
     """Type 7, and implicit penalty, which is stable below L/c from 1 on."""
     rows = [(7, -2.0, 1.0), (7, 2.0, 0.3)]
-    for ctype, decades in ((7, (-2.0, 0.0, 2.0)), ("7i", (-2.0, 0.0, 2.0, pages.NO_COMPLIANCE))):
+    for ctype, decades in ((7, (-2.0, 0.0, 2.0)), ("7i", (-2.0, 0.0, 2.0, stability.NO_COMPLIANCE))):
         rows += [(ctype, decade, step, "blown up" if step > 1.0 else "penetrating" if decade < 0.0 else "stable", 0.12)
                  for decade in decades for step in (0.2, 0.995, 1.2)]
     return table_of(*rows)
@@ -130,19 +130,19 @@ def test_cells_below_the_limit():
 
 
 def test_page(tmp_path):
-    pages.page(made_table(), tmp_path)
+    stability.page(made_table(), tmp_path)
     text = (tmp_path / "studies/stability.md").read_text()
     assert "| 7 segmented mortar | 1.00 |" in text and "Of 4 cells of the types by number 0 blew up" in text
     assert "| block | 7i PUNIT 4 | 6 | 0 | 0 | 0 | 2 | 0 |" in text
     assert "| 7i PUNIT 4 | 1e+0.0 to no compliance |" in text and "| 7 segmented mortar | 0.50 | 0.50 | 0.50 |" in text
-    pages.page(table_of((1, 0.0, 0.8), (1, 0.0, 0.2, "stable", 0.1), (1, 0.0, 0.4, "blown up", 0.1)), tmp_path)
+    stability.page(table_of((1, 0.0, 0.8), (1, 0.0, 0.2, "stable", 0.1), (1, 0.0, 0.4, "blown up", 0.1)), tmp_path)
     text = (tmp_path / "studies/stability.md").read_text()
     assert "Of 2 cells of the types by number 1 blew up" in text and "| 1 NTS | none |" in text
 
 
 def test_map_of_implicit_penalty_shows_each_cell(plain_pictures):
     """Without compliance stands apart at the right; the steps are its own."""
-    axes = pages.draw_maps(made_table()).axes[1]
+    axes = stability.draw_maps(made_table()).axes[1]
     assert axes.get_title() == "7i PUNIT 4"
     cells, apart = axes.get_images()
     assert cells.get_array().shape == (3, 3) and apart.get_array().shape == (3, 1)
@@ -159,12 +159,12 @@ def test_jobs_are_unique_and_complete():
     assert len({job.name for job in jobs}) == len(jobs) == len(mine) + 2 * len(SCENES) * (maps + 7)
     assert len(mine) == len(SCENES) * (len(stability.DECADES) + 1) * len(stability.IMPLICIT_STEPS)
     pens = {job.labels["decade"]: [word for word in job.options if word.startswith("p:pen=")] for job in mine}
-    assert pens[0.0] == ["p:pen=1"] and pens[pages.NO_COMPLIANCE] == ["p:pen=-1"]
+    assert pens[0.0] == ["p:pen=1"] and pens[stability.NO_COMPLIANCE] == ["p:pen=-1"]
     assert all("punit=4" in job.options and job.labels["kind"] == "map" for job in mine)
 
 
 @pytest.mark.parametrize("ctype, decade, step, verdict", [
-    ("7i", 4.0, 0.995, "stable"), ("7i", pages.NO_COMPLIANCE, 0.995, "stable"), ("7i", -2.0, 0.5, "penetrating"),
+    ("7i", 4.0, 0.995, "stable"), ("7i", stability.NO_COMPLIANCE, 0.995, "stable"), ("7i", -2.0, 0.5, "penetrating"),
     ("7i", 1.0, 1.2, "blown up"), (2, 0.0, 0.5, "stable"), (2, 0.0, 1.2, "blown up"), (2, -2.0, 0.5, "penetrating"),
     (2, 4.0, 0.5, "limited"), (2, 0.0, None, 0.84), (3, 0.0, None, 0.55)])
 def test_cells_and_limits_with_the_program(slideline, tmp_path, ctype, decade, step, verdict):
