@@ -116,6 +116,16 @@ def test_run_that_failed_gets_no_advice(runs, tmp_path):
     assert not found and "did not end normally" in notes[0]
 
 
+def test_run_that_goes_on_from_a_restart_file_has_not_ended(runs, tmp_path):
+    """Its log tells of the normal end of the part before."""
+    for file in runs["all"].iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    with open(tmp_path / "run.log", "a", encoding="utf-8") as log:
+        log.write("restart from the restart file run.dump01.h5\n")
+    _, found, notes = advise(tmp_path)
+    assert not found and "did not end normally" in notes[0]
+
+
 def test_contact_time_by_interface(runs):
     """Shared out by slave nodes, as many on both, or as timed, which names the id."""
     run = advise(runs["all"])[0]

@@ -64,8 +64,7 @@ def tools_page():
     sections = [("SYNOPSIS", parser.format_usage().partition("usage: ")[2]), ("DESCRIPTION", parser.description)]
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
-            sections += [(f"slideline-tools {name}".upper().replace("SLIDELINE-TOOLS ", ""), one.format_help())
-                         for name, one in action.choices.items()]
+            sections += [(name.upper(), one.format_help()) for name, one in action.choices.items()]
     sections += [("NOTES", parser.epilog), ("SEE ALSO", "slideline(1)")]
     return man_page("slideline-tools", "look into, draw and compare results of slideline", sections)
 

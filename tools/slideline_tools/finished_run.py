@@ -11,6 +11,7 @@ from slideline_tools.histories import History, read_csv
 from slideline_tools.results import Results, read
 
 NOT_WRITTEN = ("contact",)  # tables without a branch in the binout
+GOES_ON = "restart from the restart file"
 
 
 class Run:
@@ -75,6 +76,11 @@ class Run:
     def title(self) -> str:
         """Title of the deck, '' where it is not known."""
         return self.results.run.get("title", "") if self.results else ""
+
+
+def last_part(log: str) -> str:
+    """The log since the last restart."""
+    return log[log.rfind(GOES_ON) + 1:]
 
 
 def whole_instants(table):

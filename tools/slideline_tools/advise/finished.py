@@ -6,7 +6,7 @@ import re
 from slideline_tools import UserError
 from slideline_tools.draw.model import Interface, Model, Part, model_of
 from slideline_tools.files import TABLES
-from slideline_tools.finished_run import Run
+from slideline_tools.finished_run import Run, last_part
 from slideline_tools.histories import History, read_csv
 from slideline_tools.results import Results, read
 
@@ -27,7 +27,7 @@ class Finished(Run):
                 raise UserError(f"{self.path(needed)} is missing: not a finished run")
         self.tables: dict[str, History] = {name: read_csv(self.path(f".{name}.csv")) for name in TABLES
                                            if self.path(f".{name}.csv").exists()}
-        self.ended = "N o r m a l" in self.log
+        self.ended = "N o r m a l" in last_part(self.log)
         timing = read_csv(self.path(".timing.csv"))
         self.seconds: dict[str, float] = dict(zip(timing["phase"].tolist(), timing["seconds"].tolist()))
         self.total = self.seconds.get("total", 0.0)

@@ -12,12 +12,11 @@ import numpy as np
 from slideline_tools import UserError
 from slideline_tools.draw.model import Model, check_deck
 from slideline_tools.files import TABLES
-from slideline_tools.finished_run import Run
+from slideline_tools.finished_run import Run, last_part
 from slideline_tools.histories import History
 from slideline_tools.program import find_program
 from slideline_tools.results import Results, read
 
-GOES_ON = "restart from the restart file"
 #: what the log tells where there are no results
 IN_LOG = {"title": r"^title: (.*)", "deck": r"^deck: (.*)", "version": r"^slideline (\S+)",
           "options": r"^command line: (.*)", "source": r"^slideline .*, source (\S+)\)",
@@ -128,7 +127,7 @@ class Gathered(Run):
 def read_ending(log_text: str, tables: dict[str, History], results: Results | None,
                 timing: History | None) -> Ending:
     """How the run ended, by the last part of its log."""
-    tail = log_text[log_text.rfind(GOES_ON) + 1:]
+    tail = last_part(log_text)
     if "N o r m a l" in tail or "E r r o r" in tail:
         reasons = re.findall(r"^ \*\*\* (.*) \*\*\*$", tail, re.M)
         cycle = number(r"Problem cycle\s+=\s+(\S+)", tail)

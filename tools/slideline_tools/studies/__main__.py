@@ -50,13 +50,13 @@ def build_parser():
     return parser
 
 
-def planned(study, wanted):
+def planned(study, wanted, program):
     """All runs that were asked for."""
     rounds = study.quick_repeats if wanted.quick else study.repeats
     options = Options(
         levels=tuple(wanted.levels or (study.quick_levels if wanted.quick else study.levels)),
         types=tuple(wanted.types or study.types), quick=wanted.quick,
-        repeats=rounds if wanted.repeats is None else wanted.repeats)
+        repeats=rounds if wanted.repeats is None else wanted.repeats, program=str(program))
     if options.repeats < 1 or wanted.parallel < 1:
         raise UserError("--repeats and -j must be at least 1")
     unknown = [one for one in options.types if one not in (*ALL_TYPES, *study.types)]
@@ -163,7 +163,7 @@ def perform(wanted):
         raise UserError(f"no program {program}; build it with tools/build.sh {study.build}")
     if wanted.publish:
         check_fit_to_publish(wanted, pages.program_source(program))
-    jobs, counted = with_counter(planned(study, wanted), wanted)
+    jobs, counted = with_counter(planned(study, wanted, program), wanted)
     sweep = Sweep(folder, program, file_digest(program), counted)
     chosen = part_of_text(jobs, wanted.part) if wanted.part else jobs
     if wanted.list:

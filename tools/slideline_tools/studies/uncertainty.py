@@ -125,7 +125,7 @@ SCENES = {
 
 def jobs(options):
     """The three meshes and the finest one of each scene; the quick study has two scenes without the latter."""
-    listed, program = [], find_program()
+    listed, program = [], options.program or find_program()
     for name in list(SCENES)[:2] if options.quick else SCENES:
         scene, stem = SCENES[name], re.sub(r"\W+", "_", name)
         with tempfile.TemporaryDirectory() as folder:

@@ -14,12 +14,13 @@ from slideline_tools.contact_types import ALL_TYPES
 
 @dataclasses.dataclass(frozen=True)
 class Options:
-    """What the user asked for."""
+    """What the user asked for; `program`: the one that runs, for decks that it has to make."""
 
     levels: tuple = (1,)
     types: tuple = ALL_TYPES
     quick: bool = False
     repeats: int = 1
+    program: str = ""
 
 
 @dataclasses.dataclass(frozen=True)
