@@ -24,43 +24,37 @@ ALL = (*CONTACT, "deck", "output")
 
 @dataclasses.dataclass(frozen=True)
 class Page:
-    """Tables: `quoted` by a page of doc/studies, made by a `command` from the top of the tree, of `sources`, folders of src.
-
-    `module`: of slideline_tools.studies, with the `STUDY` that tools/study.sh runs.
-    """
+    """Tables: `quoted` by a page of doc/studies, made by a `command` from the top of the tree, of `sources`, folders of src."""
 
     quoted: str
     command: tuple
     sources: tuple = CONTACT
-    module: str = ""
 
 
-def study(quoted, name, module, sources=CONTACT):
-    """Tables of tools/study.sh."""
-    return Page(quoted, ("tools/study.sh", name, "--publish"), sources, module)
-
-
-PAGES = {  # quick ones first; `chooses` reads what `speed_accuracy` wrote
-    "estimates": study("choosing", "estimates", "estimates"),
-    "uncertainty": study("uncertainty", "uncertainty", "uncertainty"),
-    "round": study("speed_accuracy", "round", "round"),
-    "paper": study("paper", "paper", "paper.study"),
-    "stability": study("stability", "stability", "stability.study"),
-    "speed_accuracy": study("speed_accuracy", "speed-accuracy", "speed_accuracy.study"),
-    "chooses": study("choosing", "chooses", "chooses"),
-    "simplify": study("simplify", "simplify", "simplify.study", ALL),
-    "scale": study("scale", "scale", "scale.study", ("parallel",)),
+STUDIED = (  # module of slideline_tools.studies, page that quotes its tables, sources; `chooses` reads what speed_accuracy wrote
+    ("estimates", "choosing", CONTACT),
+    ("uncertainty", "uncertainty", CONTACT),
+    ("round", "speed_accuracy", CONTACT),
+    ("paper", "paper", CONTACT),
+    ("stability", "stability", CONTACT),
+    ("speed_accuracy", "speed_accuracy", CONTACT),
+    ("chooses", "choosing", CONTACT),
+    ("simplify", "simplify", ALL),
+    ("scale", "scale", ("parallel",)),
+)
+STUDIES = {module.replace("_", "-"): module for module, *_ in STUDIED}
+PAGES = {
+    **{module: Page(quoted, ("tools/study.sh", module.replace("_", "-"), "--publish"), sources) for module, quoted, sources in STUDIED},
     "peers": Page("peers", ("tests/lab/bench/peers/run.sh", "--publish")),
     "speed_laws": Page("speed", ("tests/lab/bench/laws.sh", "--publish"), ("material",)),
     "speed": Page("speed", ("tests/lab/bench/run.sh", "--publish"), ALL),
 }
 
-STUDIES = {page.command[1]: page.module for page in PAGES.values() if page.module}
-
 
 def load(name):
-    """The `Study` of that name."""
-    return importlib.import_module(f"slideline_tools.studies.{STUDIES[name]}").STUDY
+    """The `Study` of that name, of its module or of `study` in its folder."""
+    module = importlib.import_module(f"slideline_tools.studies.{STUDIES[name]}")
+    return getattr(module, "STUDY", None) or importlib.import_module(f"{module.__name__}.study").STUDY
 
 
 ORIGIN = re.compile(r"^Made from source `(?P<source>\S+)` on (?P<processor>.+); digest of what it speaks of "
