@@ -29,16 +29,15 @@ def walls_of(deck: str) -> list[Wall]:
 
 def draw_walls(axes, walls: list[Wall], zoom) -> None:
     """Each wall as a line across the window (x0, x1, y0, y1), with its number behind it."""
-    size = math.hypot(zoom[1] - zoom[0], zoom[3] - zoom[2])
-    middle = (0.5 * (zoom[0] + zoom[1]), 0.5 * (zoom[2] + zoom[3]))
+    low, high = np.array(zoom[::2]), np.array(zoom[1::2])
+    size, middle = np.linalg.norm(high - low), 0.5 * (low + high)
     for wall in walls:
-        along = (wall.normal[1], -wall.normal[0])
-        offset = sum((m - p) * a for m, p, a in zip(middle, wall.point, along))
-        near = [p + offset * a for p, a in zip(wall.point, along)]
-        if math.dist(near, middle) > size:
+        along = np.array([wall.normal[1], -wall.normal[0]])
+        near = wall.point + (middle - wall.point) @ along * along
+        if np.linalg.norm(near - middle) > size:
             continue
-        axes.plot(*zip(*[[f + side * size * a for f, a in zip(near, along)] for side in (-1.0, 1.0)]), color=COLOUR,
+        axes.plot(*np.stack([near - size * along, near + size * along]).T, color=COLOUR,
                   linewidth=2.0, zorder=4, scalex=False, scaley=False)
-        axes.annotate(f"wall {wall.id}", near, xytext=[-9.0 * part for part in wall.normal], textcoords="offset points",
+        axes.annotate(f"wall {wall.id}", near, xytext=-9.0 * wall.normal, textcoords="offset points",
                       fontsize=6, color=COLOUR, ha="center", va="center", annotation_clip=True,
                       rotation=math.degrees(math.atan2(along[1], along[0])) % 180.0)

@@ -21,10 +21,7 @@ def resolve(deck: str | os.PathLike, program: str | os.PathLike | None = None,
     """
     deck = pathlib.Path(deck)
     if deck.is_dir():
-        found = sorted(deck.glob("*.effective.k"))
-        if len(found) != 1:
-            raise UserError(f"{deck}: {len(found)} effective decks, expected one")
-        deck = found[0]
+        deck = pathlib.Path(f"{files.find_run(deck, '.effective.k')}.effective.k")
     if not deck.is_file():
         raise UserError(f"{deck}: no such file")
     return check_deck(deck, find_program(program), overrides)
