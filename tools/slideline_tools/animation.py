@@ -2,30 +2,24 @@
 """Moving pictures of a field on the deformed mesh (GIF by Pillow, MP4 by ffmpeg)."""
 import pathlib
 
+from matplotlib import animation
+
 from slideline_tools import UserError, plots
 from slideline_tools.fields import default_field, scalar_field
 from slideline_tools.plots import plt
 
 PIXELS_PER_INCH = 110
-
-
-def writer_for(path, rate):
-    """The writer of matplotlib for a file name; raises UserError if it cannot be used."""
-    from matplotlib import animation
-    suffix = pathlib.Path(path).suffix.lower()
-    if suffix == ".gif":
-        return animation.PillowWriter(fps=rate)
-    if suffix == ".mp4":
-        if not animation.FFMpegWriter.isAvailable():
-            raise UserError("MP4 needs the program ffmpeg, which is not installed here; "
-                               "install it or choose a name that ends in .gif")
-        return animation.FFMpegWriter(fps=rate)
-    raise UserError(f"'{path}': an animation is written to a .gif or .mp4 file")
+WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}
 
 
 def animate(results, path, name=None, scale=1.0, rate=12, zoom=None):
     """All states of a field on one colour scale and in one window, `rate` pictures a second."""
-    writer = writer_for(path, rate)
+    kind = WRITERS.get(pathlib.Path(path).suffix.lower())
+    if kind is None:
+        raise UserError(f"'{path}': an animation is written to a .gif or .mp4 file")
+    if not animation.writers.is_available(kind):
+        raise UserError("MP4 needs the program ffmpeg, which is not installed here; install it or choose a name that ends in .gif")
+    writer = animation.writers[kind](fps=rate)
     field = scalar_field(results, name or default_field(results))
     states = range(results.n_state)
     if not results.n_state:
