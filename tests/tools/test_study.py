@@ -300,11 +300,7 @@ def test_pictures_of_the_page_are_those_that_the_chart_has_drawn(tiny, bench, mo
     def chart(_, folder):
         (folder / "a.png").write_text("picture")
 
-    def page(_, doc):
-        (doc / "studies").mkdir(parents=True)
-        (doc / "studies" / "tiny.md").write_text("# Tiny\n\n![a](../pictures/a.png)\n")
-
-    made = dataclasses.replace(pages.load("tiny"), chart=chart, page=page)
+    made = dataclasses.replace(pages.load("tiny"), chart=chart, page=lambda _: "# Tiny\n\n![a](../pictures/a.png)\n")
     monkeypatch.setattr(pages, "load", lambda name: made)
     monkeypatch.setitem(pages.PAGES, "tiny", pages.Page("paper", ()))
     assert tiny() == 0

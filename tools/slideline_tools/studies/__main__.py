@@ -13,6 +13,7 @@ import sys
 
 from slideline_tools import UserError, counting
 from slideline_tools.contact_types import ALL_TYPES, SERIES, parse_series
+from slideline_tools.studies.common import write_page
 from slideline_tools.studies.framework import pages
 from slideline_tools.studies.framework.job import Options, file_digest, interleave, part_of, write_whole
 from slideline_tools.studies.framework.progress import Progress
@@ -118,23 +119,15 @@ def collect(study, jobs, sweep, doc, publish):
     print(f"wrote {folder / study.name}.csv: {len(table)} runs"
           + "".join(f", {count[state]} {state}" for state in (FAILED, MISSING) if state in count))
     study.chart(table, folder)
-    if study.page:
+    if text := study.page(table) if study.page else "":
         processors = sorted(set(table["processor"].dropna()))
         if publish and len(processors) > 1:
             raise UserError(f"runs of several processors are not published together: {'; '.join(processors)}")
-        study.page(table, doc)
-        finish_page(study.name.replace("-", "_"), doc, folder, pages.program_source(sweep.program), "; ".join(processors))
-
-
-def finish_page(name, doc, folder, source, processors):
-    """The page gets the line of its origin, and the pictures that it shows from the folder of the study."""
-    path = doc / "studies" / f"{name}.md"
-    text = pages.with_origin(name, path.read_text(encoding="utf-8"), source, processors)
-    path.write_text(text, encoding="utf-8")
-    (doc / "pictures").mkdir(exist_ok=True)
-    for picture in re.findall(r"\(\.\./pictures/(\S+\.png)\)", text):
-        if (folder / picture).exists():
-            shutil.copy(folder / picture, doc / "pictures")
+        write_page(doc, study.name.replace("-", "_"), text, pages.program_source(sweep.program), "; ".join(processors))
+        (doc / "pictures").mkdir(exist_ok=True)
+        for picture in re.findall(r"\(\.\./pictures/(\S+\.png)\)", text):
+            if (folder / picture).exists():
+                shutil.copy(folder / picture, doc / "pictures")
 
 
 def check_fit_to_publish(wanted, source):

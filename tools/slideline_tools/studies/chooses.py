@@ -13,7 +13,7 @@ import pandas as pd
 
 from slideline_tools import UserError
 from slideline_tools.contact_types import ALL_TYPES
-from slideline_tools.studies.common import label, markdown_table, write_page
+from slideline_tools.studies.common import label, markdown_table, page_of
 from slideline_tools.studies.framework.job import Job, Study, counted_job
 from slideline_tools.studies.framework.table import counted, finished, who_counted
 from slideline_tools.studies.speed_accuracy.points import errors_of
@@ -104,8 +104,8 @@ def derive(table, folder):
     return table.merge(pd.DataFrame(found), how="left", on="run") if found else table
 
 
-def page(table, doc):
-    """DOC/studies/chooses.md."""
+def page(table):
+    """Text of DOC/studies/chooses.md."""
     runs = finished(table[table["type"] == 0])
     shown = pd.DataFrame({
         "scene": [SCENES[name].title for name in runs["scene"]], "target": runs["target"],
@@ -115,10 +115,10 @@ def page(table, doc):
         shown["over the front"] = runs["over_front"].map("{:.3f}".format)
         shown["for each error alone"] = runs["alone"]
         shown["over its type"] = runs["over_type"].map("{:+.2%}".format)
-    write_page(doc, "chooses", "# What leaving the type to the program costs",
-               "Scenes of speed-accuracy on their coarsest meshes. Over the front: instructions over those of the cheapest type by name "
-               "that has none of the errors larger, then the same for each error alone; over its type: more than the type by name "
-               f"takes. {who_counted(table)}", markdown_table(shown))
+    return page_of("# What leaving the type to the program costs",
+                   "Scenes of speed-accuracy on their coarsest meshes. Over the front: instructions over those of the cheapest type by name "
+                   "that has none of the errors larger, then the same for each error alone; over its type: more than the type by name "
+                   f"takes. {who_counted(table)}", markdown_table(shown))
 
 
 STUDY = Study("chooses", jobs, measure, lambda table, folder: None, derive, page)

@@ -71,12 +71,16 @@ def save_small(figure, path, colours=256, lines=False):
         raise UserError(f"{path}: {path.stat().st_size} bytes, more than {LARGEST_PICTURE}")
 
 
-def write_page(doc, name, *blocks):
-    """Write DOC/studies/NAME.md of headings, texts and tables; the source and the processor it was made from stand below its title."""
+def page_of(*blocks):
+    """The text of a page of headings, texts and tables."""
+    return "\n\n".join(block for block in blocks if block).rstrip("\n") + "\n"
+
+
+def write_page(doc, name, text, *origin):
+    """Write DOC/studies/NAME.md; the source and the processor it was made from (see `with_origin`) stand below its title."""
     path = doc / "studies" / f"{name}.md"
     path.parent.mkdir(parents=True, exist_ok=True)
-    text = "\n\n".join(block for block in blocks if block).rstrip("\n") + "\n"
-    path.write_text(with_origin(name, text), encoding="utf-8")
+    path.write_text(with_origin(name, text, *origin), encoding="utf-8")
     print(f"wrote {path}")
 
 

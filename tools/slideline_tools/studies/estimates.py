@@ -16,7 +16,7 @@ from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.scenes import hertz, sliding
 from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, PENALTY, RADIUS
 from slideline_tools.studies import sliding as sliding_study
-from slideline_tools.studies.common import colour, label, markdown_table, marker, save_small, verification, write_page
+from slideline_tools.studies.common import colour, label, markdown_table, marker, save_small, verification
 from slideline_tools.studies.framework.job import Job, Study
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.hertz import MODULUS, lines, order
@@ -192,11 +192,10 @@ def reading(runs):
     return "\n".join(f"- {text}" for figures, text in words if len(figures))
 
 
-def page(table, doc):
-    """DOC/studies/estimates.md."""
+def page(table):
+    """Text of DOC/studies/estimates.md."""
     runs = finished(table)
-    write_page(doc, "estimates", PAGE.format(estimates=table_of(runs, "estimate"), errors=table_of(runs, "error"),
-                                             reading=reading(runs)))
+    return PAGE.format(estimates=table_of(runs, "estimate"), errors=table_of(runs, "error"), reading=reading(runs))
 
 
 STUDY = Study("estimates", jobs, measure, chart, page=page, levels=(1, 2, 3), types=ALL_TYPES)

@@ -8,7 +8,7 @@ import numpy as np
 from slideline_tools import scenes
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.results import read
-from slideline_tools.studies.common import colour, label, markdown_table, marker, save_small, verification, write_page
+from slideline_tools.studies.common import colour, label, markdown_table, marker, page_of, save_small, verification
 from slideline_tools.studies.estimates import line_contact, line_error
 from slideline_tools.studies.framework.job import Job, Study
 from slideline_tools.studies.framework.table import finished
@@ -130,8 +130,8 @@ def chart(table, folder):
         save_small(figure, folder / "round.png", lines=True)
 
 
-def page(table, doc):
-    """DOC/studies/round.md."""
+def page(table):
+    """Text of DOC/studies/round.md."""
     runs = finished(table).dropna(subset=["mean"])
     texts = (runs[["mean", "nodal"]] * 100.0).map(lambda error: f"{error:.2g}" if error < 99.5 else f"{error:.0f}")
     runs = runs.assign(text=(texts["mean"] + ", " + texts["nodal"]).mask(runs["nodal"].isna(), "no contact"),
@@ -139,9 +139,9 @@ def page(table, doc):
     cells = runs.pivot(index=["scene", "level", "form"], columns="type", values="text")
     costs = runs.groupby(["scene", "level", "form"])[["updates", "computing"]].agg({"updates": "max", "computing": "median"})
     costs = costs.map("{:.2g}".format).rename(columns={"computing": "seconds"})
-    write_page(doc, "round", "# Round bodies with arcs and with facets",
-               "Errors in per cent of mean and nodal pressures (rms); seconds are medians of the types.",
-               "![Error over element updates](../pictures/round.png)", markdown_table(costs.join(cells).reset_index()))
+    return page_of("# Round bodies with arcs and with facets",
+                   "Errors in per cent of mean and nodal pressures (rms); seconds are medians of the types.",
+                   "![Error over element updates](../pictures/round.png)", markdown_table(costs.join(cells).reset_index()))
 
 
 STUDY = Study("round", jobs, measure, chart, add_errors, page, levels=(1, 2, 4), types=(1, 2, 4, 5, 7))

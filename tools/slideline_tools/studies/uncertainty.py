@@ -17,7 +17,7 @@ from slideline_tools.answer.meshes import Meshes
 from slideline_tools.answer.quantity import parse
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, plt
 from slideline_tools.program import Outcome, find_program
-from slideline_tools.studies.common import markdown_table, save_small, verification, write_page
+from slideline_tools.studies.common import markdown_table, save_small, verification
 from slideline_tools.studies.framework.job import Job, Study
 from slideline_tools.studies.framework.pages import ROOT
 from slideline_tools.studies.framework.table import finished
@@ -202,19 +202,19 @@ Missed:
 """
 
 
-def page(table, doc):
-    """DOC/studies/uncertainty.md."""
+def page(table):
+    """Text of DOC/studies/uncertainty.md; '' where no scene has all its meshes."""
     found = judged(table)
     if not len(found):
-        return
+        return ""
 
     def span(values):
         return f"{values.min():.2g} to {values.max():.2g}"
     by_scene = found.groupby("scene", sort=False).agg({
         "held": lambda held: f"{held.sum()} of {len(held)}", "U, %": span, "error, %": span, "judged by": lambda by: ", ".join(sorted(set(by)))})
-    write_page(doc, "uncertainty", PAGE.format(
+    return PAGE.format(
         scenes=len(by_scene), held=found["held"].sum(), count=len(found), share=100.0 * found["held"].mean(), median=found["U/error"].median(),
-        scenes_table=markdown_table(by_scene.reset_index()), missed=markdown_table(found[~found["held"]].drop(columns=["order", "held"]))))
+        scenes_table=markdown_table(by_scene.reset_index()), missed=markdown_table(found[~found["held"]].drop(columns=["order", "held"])))
 
 
 STUDY = Study("uncertainty", jobs, measure, chart, page=page)

@@ -82,8 +82,8 @@ class Study:
     `chart(table, folder)`   draws the pictures into `folder`
     `derive(table, folder)`  optional: the table (see table.py) with columns that need several runs, whose
                              results are in folder/runs/RUN, RUN the name in column `run`
-    `page(table, doc)`       optional: writes DOC/studies/<name>.md; pictures that it shows as ../pictures/NAME.png are
-                             those that `chart` has drawn
+    `page(table)`            optional: text of DOC/studies/<name>.md, '' for none; pictures that it shows as
+                             ../pictures/NAME.png are those that `chart` has drawn
     `levels`, `types`, `repeats` and `quick_...`: used where the user names none.
     `build`                  whose program it takes, of build/<build>
     """
@@ -93,7 +93,7 @@ class Study:
     measure: Callable[[Job, pathlib.Path], Mapping]
     chart: Callable[[pd.DataFrame, pathlib.Path], None]
     derive: Optional[Callable[[pd.DataFrame, pathlib.Path], pd.DataFrame]] = None
-    page: Optional[Callable[[pd.DataFrame, pathlib.Path], None]] = None
+    page: Optional[Callable[[pd.DataFrame], str]] = None
     levels: Sequence[int] = (1,)
     types: Sequence = ALL_TYPES
     repeats: int = 1

@@ -92,12 +92,10 @@ def program_source(program=None):
 
 
 def with_origin(name, text, source=None, processors=None):
-    """The text of a page with the line of its origin below its title, in place of an older one.
+    """The text of a page with the line of its origin below its title.
 
     Without `source` and `processors`: the program of the release build, or what $SLIDELINE names, and this machine.
     """
     title, _, rest = text.partition("\n")
-    if ORIGIN.match(rest.lstrip("\n")):
-        rest = rest.lstrip("\n").partition("\n")[2]
     return (f"{title}\n\nMade from source `{source or program_source()}` on {processors or processor()}; "
             f"digest of what it speaks of `{digest(PAGES[name].sources)}`.\n\n{rest.lstrip()}")

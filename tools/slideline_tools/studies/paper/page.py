@@ -8,7 +8,7 @@ from slideline_tools.plots import PAGE_WIDTH, STYLE, colour_bar, draw_field, mar
 from slideline_tools.results import read
 from slideline_tools.scenes import block_grids
 from slideline_tools.studies import block, collision, patch, peaks, sliding
-from slideline_tools.studies.common import colour, label, markdown_table, save_small, write_page
+from slideline_tools.studies.common import colour, label, markdown_table, page_of, save_small
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.paper import costs
 from slideline_tools.studies.paper.claims import claim_table
@@ -198,18 +198,18 @@ SECTIONS = (
      lambda runs: level_table(runs, COLLISION), "Plastic strain at 0.7 ms; the rebound at the end."))
 
 
-def page(table, doc):
-    """DOC/studies/paper.md."""
+def page(table):
+    """Text of DOC/studies/paper.md."""
     times = costs.times_of(table)
     parts = [] if times.empty else cost_section(table, times)
     for title, scene, picture, tables, words in SECTIONS:
         runs = results_of(table, scene)
         if not runs.empty:
             parts += [f"## {title}", words, f"![{title}](../pictures/{picture}.png)" if picture else "", tables(runs)]
-    write_page(doc, "paper", "# The paper: what the runs gave",
-               "Tables of `tools/study.sh paper`: the scenes of Kang, Lee & Shin (2023) with all contact types. N_r divides the cells. "
-               "The paper covers types 1, 3, 4, 5 and 6; its program and machine are others, and dimensions and motions that it does "
-               "not give are ours.", *parts)
+    return page_of("# The paper: what the runs gave",
+                   "Tables of `tools/study.sh paper`: the scenes of Kang, Lee & Shin (2023) with all contact types. N_r divides the cells. "
+                   "The paper covers types 1, 3, 4, 5 and 6; its program and machine are others, and dimensions and motions that it does "
+                   "not give are ours.", *parts)
 
 
 def cost_section(table, times):

@@ -13,7 +13,7 @@ from slideline_tools.decks import Deck
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.scenes import collision, collision_grids
 from slideline_tools.scenes.common import elastic, part, plane_strain
-from slideline_tools.studies.common import markdown_table, save_small, write_page
+from slideline_tools.studies.common import markdown_table, page_of, save_small
 from slideline_tools.studies.framework.job import Job, Study
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.scale import tiles
@@ -207,13 +207,13 @@ def chart(table, folder):
         save_small(draw(seen, constants_of(seen)), folder / "scale.png", colours=64, lines=True)
 
 
-def page(table, doc):
-    """DOC/studies/scale.md."""
+def page(table):
+    """Text of DOC/studies/scale.md."""
     runs, cuts = finished(table), all_cuts()
     constants = constants_of(seen_sends(runs, cuts))
     shares = ", ".join(f"{contact_share(one):.2f} at {power(one)} elements" for one in SIZES)
-    write_page(
-        doc, "scale", "# Many processes", "![Counted bytes and predicted efficiency](../pictures/scale.png)",
+    return page_of(
+        "# Many processes", "![Counted bytes and predicted efficiency](../pictures/scale.png)",
         "## Counted in a cycle, mean and largest of the processes", counted_table(runs, cuts), "## Cut", markdown_table(cuts),
         "## Predicted efficiency", f"By the model of doc/studies/scale.md with m = {constants[0]:.0f} messages and b = 16 bytes times "
         f"{constants[1]:.1f} sqrt(N/p).", predicted_table(constants),

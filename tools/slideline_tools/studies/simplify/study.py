@@ -16,7 +16,7 @@ from slideline_tools import UserError, scenes
 from slideline_tools.contact_types import ALL_TYPES, TYPES
 from slideline_tools.histories import read_csv
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, plt
-from slideline_tools.studies.common import label, markdown_table, save_small, write_page
+from slideline_tools.studies.common import label, markdown_table, page_of, save_small
 from slideline_tools.studies.framework.job import Job, Study, counted_job
 from slideline_tools.studies.framework.runner import RECORD
 from slideline_tools.studies.framework.table import counted, finished, who_counted
@@ -273,14 +273,14 @@ def output_table(runs, level):
         "results, MB": (1e-6 * rows["bytes"]).map("{:.3g}".format)}))
 
 
-def page(table, doc):
-    """DOC/studies/simplify.md."""
+def page(table):
+    """Text of DOC/studies/simplify.md."""
     runs = medians_of(table)
     if "collision" not in runs.index:
         raise UserError("no finished runs of the collision")
     levels = sorted(runs.loc["collision"].index)
-    write_page(
-        doc, "simplify", "# No more than a scene needs",
+    return page_of(
+        "# No more than a scene needs",
         "Processor time of the whole run, one thread, medians; quartiles "
         f"{percent(runs['spread'].median())} of it apart (median of the variants). {who_counted(table)}",
         "![Processor time with and without](../pictures/simplify.png)", *(step_table(runs, level) for level in levels),

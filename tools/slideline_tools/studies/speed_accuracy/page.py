@@ -4,7 +4,7 @@ import pandas as pd
 
 from slideline_tools import UserError
 from slideline_tools.contact_types import HARD, IMPLICIT
-from slideline_tools.studies.common import label, markdown_table, write_page
+from slideline_tools.studies.common import label, markdown_table, page_of
 from slideline_tools.studies.framework.rules import RUN_FACTOR, between, least
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.speed_accuracy.charts import sorted_types
@@ -136,14 +136,14 @@ def scene_section(name, points, errors):
             f"({named}):\n\n" + markdown_table(rows.reset_index()))
 
 
-def page(table, doc):
-    """DOC/studies/speed_accuracy.md."""
+def page(table):
+    """Text of DOC/studies/speed_accuracy.md."""
     points = points_of(table)
     if points.empty:
         raise UserError("no finished runs")
     errors = errors_of(points)
-    write_page(
-        doc, "speed_accuracy", "# Speed against accuracy",
+    return page_of(
+        "# Speed against accuracy",
         f"{'; '.join(sorted(set(points['build'])))}. Medians of {points['rounds'].min()} or more rounds; quartiles of contact times "
         f"at most {points['spread'].max():.0%} apart.",
         "## Over type 1", "Geometric means over meshes, then over scenes (from scene to scene); errors as far as they are known; net "

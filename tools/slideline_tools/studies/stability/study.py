@@ -16,7 +16,7 @@ from matplotlib.patches import Patch
 from slideline_tools import UserError
 from slideline_tools.contact_types import ALL_TYPES, IMPLICIT, in_order
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
-from slideline_tools.studies.common import label, markdown_table, save_small, write_page
+from slideline_tools.studies.common import label, markdown_table, page_of, save_small
 from slideline_tools.studies.framework.job import Job, Study
 from slideline_tools.studies.framework.rules import between
 from slideline_tools.studies.stability.measures import BLOWN_UP, CHATTERING, STABLE, VERDICTS, measure_cell
@@ -255,12 +255,12 @@ def depth_table(table):
     return markdown_table(table.rename(index=label, columns="1e{:+.1f}".format).reset_index())
 
 
-def page(table, doc):
-    """DOC/studies/stability.md."""
+def page(table):
+    """Text of DOC/studies/stability.md."""
     cells = below(table[table["type"] != IMPLICIT])
     bad = cells["verdict"].isin([BLOWN_UP, CHATTERING])
-    write_page(
-        doc, "stability", "# Where each type is stable", "![Stability maps](../pictures/stability.png)",
+    return page_of(
+        "# Where each type is stable", "![Stability maps](../pictures/stability.png)",
         "## Limit of the program over the smaller of those by eigenvalues", limit_table(table),
         "## Verdicts below the program's limit", f"Of {len(cells)} cells of the types by number {bad.sum()} blew up or chattered.",
         verdict_table(table),
