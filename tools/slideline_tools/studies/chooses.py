@@ -115,10 +115,11 @@ def page(table):
         shown["over the front"] = runs["over_front"].map("{:.3f}".format)
         shown["for each error alone"] = runs["alone"]
         shown["over its type"] = runs["over_type"].map("{:+.2%}".format)
-    return page_of("# What leaving the type to the program costs",
-                   "Scenes of speed-accuracy on their coarsest meshes. Over the front: instructions over those of the cheapest type by name "
-                   "that has none of the errors larger, then the same for each error alone; over its type: more than the type by name "
-                   f"takes. {who_counted(table)}", markdown_table(shown))
+    return page_of(
+        "# What leaving the type to the program costs",
+        "Scenes of speed-accuracy on their coarsest meshes. Over the front: instructions over those of the cheapest type by name "
+        "that has none of the errors larger, then the same for each error alone; over its type: more than the type by name "
+        f"takes. {who_counted(table)}", markdown_table(shown))
 
 
 STUDY = Study("chooses", jobs, measure, lambda table, folder: None, derive, page)

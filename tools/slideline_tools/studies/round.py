@@ -139,9 +139,10 @@ def page(table):
     cells = runs.pivot(index=["scene", "level", "form"], columns="type", values="text")
     costs = runs.groupby(["scene", "level", "form"])[["updates", "computing"]].agg({"updates": "max", "computing": "median"})
     costs = costs.map("{:.2g}".format).rename(columns={"computing": "seconds"})
-    return page_of("# Round bodies with arcs and with facets",
-                   "Errors in per cent of mean and nodal pressures (rms); seconds are medians of the types.",
-                   "![Error over element updates](../pictures/round.png)", markdown_table(costs.join(cells).reset_index()))
+    return page_of(
+        "# Round bodies with arcs and with facets",
+        "Errors in per cent of mean and nodal pressures (rms); seconds are medians of the types.",
+        "![Error over element updates](../pictures/round.png)", markdown_table(costs.join(cells).reset_index()))
 
 
 STUDY = Study("round", jobs, measure, chart, add_errors, page, levels=(1, 2, 4), types=(1, 2, 4, 5, 7))

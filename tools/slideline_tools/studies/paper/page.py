@@ -206,10 +206,11 @@ def page(table):
         runs = results_of(table, scene)
         if not runs.empty:
             parts += [f"## {title}", words, f"![{title}](../pictures/{picture}.png)" if picture else "", tables(runs)]
-    return page_of("# The paper: what the runs gave",
-                   "Tables of `tools/study.sh paper`: the scenes of Kang, Lee & Shin (2023) with all contact types. N_r divides the cells. "
-                   "The paper covers types 1, 3, 4, 5 and 6; its program and machine are others, and dimensions and motions that it does "
-                   "not give are ours.", *parts)
+    return page_of(
+        "# The paper: what the runs gave",
+        "Tables of `tools/study.sh paper`: the scenes of Kang, Lee & Shin (2023) with all contact types. N_r divides the cells. "
+        "The paper covers types 1, 3, 4, 5 and 6; its program and machine are others, and dimensions and motions that it does "
+        "not give are ours.", *parts)
 
 
 def cost_section(table, times):
