@@ -300,9 +300,9 @@ def contact_figure(results, states=("-1",)):
 
 # ---- the report picture ------------------------------------------------------------------------
 
-def report_figure(results, state="-1", name=None, scale=1.0):
+def report_figure(results, state="-1", scale=1.0):
     """A field on the deformed mesh above the energies and, with contact, the contact force."""
-    field = scalar_field(results, name or default_field(results))
+    field = scalar_field(results, default_field(results))
     state = results.state_index(state)
     panels = report_requests(results)
     zoom = window(results, [state], scale)
