@@ -165,12 +165,11 @@ def contact_points(program, folder):
         for side, nodes, base, up in ((SLAVE, slave, lift, 1), (MASTER, master, 0.0, -1)):
             axes.fill_between([0, 1], base, base + up * 0.34, color=side, alpha=0.16, linewidth=0)
             axes.plot([0, 1], [base, base], color=side, linewidth=1.4)
-            for k in np.flatnonzero(np.isin(ids, nodes)):
-                axes.plot(x[k], base, "o", color=side, markersize=4)
-                if abs(force[k]) > 1e-9:
-                    axes.annotate("", xy=(x[k], base + scale * force[k]), xytext=(x[k], base),
-                                  arrowprops={"arrowstyle": "-|>", "color": side, "linewidth": 1.6,
-                                              "shrinkA": 0, "shrinkB": 0})
+            on = np.isin(ids, nodes)
+            axes.plot(x[on], 0.0 * x[on] + base, "o", color=side, markersize=4)
+            for k in np.flatnonzero(on & (abs(force) > 1e-9)):
+                axes.annotate("", xy=(x[k], base + scale * force[k]), xytext=(x[k], base),
+                              arrowprops={"arrowstyle": "-|>", "color": side, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0})
         for place, side in points_of_type(kind):
             axes.plot(place, lift / 2 + (0.022 if side == 1 else -0.022), "x", markersize=6,
                       color=SLAVE if side == 1 else MASTER, markeredgewidth=1.6)
