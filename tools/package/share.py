@@ -45,9 +45,17 @@ def man_page(name, summary, sections):
 
 
 def program_page(text):
-    """The man page of the program: its help."""
-    summary, _, more = text.partition("\n\n")
-    return man_page("slideline", summary.partition(": ")[2], [("DESCRIPTION", more), ("SEE ALSO", "slideline-tools(1)")])
+    """The man page of the program from its help: a paragraph that begins with a word and a colon is a section."""
+    title, synopsis, options, overrides, rest = text.split("\n\n", 4)
+    results, more = rest.split("while it runs:", 1)
+    running, status = more.split("exit status:", 1)
+    status, version = status.rsplit("--version", 1)
+    return man_page("slideline", title.partition(": ")[2], [
+        ("SYNOPSIS", re.sub(r"^(usage:|      )  ?", "", synopsis, flags=re.M)),
+        ("OPTIONS", f"{options}\n  --version     {version.replace('prints', '').strip()}"),
+        ("OVERRIDES", overrides.partition("\n")[2]),
+        ("FILES", results.partition(": ")[2]), ("WHILE IT RUNS", running.strip()),
+        ("EXIT STATUS", status.strip()), ("SEE ALSO", "slideline-tools(1)")])
 
 
 def tools_page():
