@@ -39,6 +39,8 @@ OWN_OPTIONS = {
         ("--nx", {"type": int, "dest": "n_x", "help": "elements along 8 m, a multiple of 8 (8)"}),
         ("--ny", {"type": int, "dest": "n_y", "help": "elements through 1 m, even (4)"}),
         ("--elastoplastic", {"action": "store_true", "help": "yield stress 10 MPa"})),
+    "taylor": (("--columns", {"type": int, "help": "elements along the radius of 3.2 mm (10)"}),
+               ("--rows", {"type": int, "help": "elements along 32.4 mm (100)"})),
 }
 #: what the parser sets beside the options of a scene
 OTHERS = ("command", "scene", "output", "run", "parser")

@@ -21,6 +21,9 @@ Exit status: 0 agreed, 1 a column failed, 2 the tables cannot be compared.""",
         ("--rtol", {"type": float, "default": 1.0e-3, "help": "relative tolerance (1e-3)"}),
         ("--floor", {"type": float, "default": 1.0e-3,
                      "help": "absolute tolerance over the largest value of the column, or of all components of its vector (1e-3)"}),
+        ("--atol", {"type": float, "help": "absolute tolerance instead of --floor"}),
+        ("--time", {"type": float, "default": 1.0e-2,
+                    "help": "tolerance of the time of the peak over the time span (1e-2)"}),
         ("--column-rtol", {"action": "append", "default": [], "metavar": "COLUMN=RTOL",
                            "help": "relative tolerance of one column; may be repeated"}),
         ("--measures", {"help": "comma list of: values, peak, time of peak, impulse, final "
@@ -51,7 +54,7 @@ def compare(options) -> int:
     measures = tuple(options.measures.split(",")) if options.measures else judge.MEASURES
     if unknown := [name for name in measures if name not in judge.MEASURES]:
         raise UserError(f"unknown measure '{unknown[0]}'; there are {', '.join(judge.MEASURES)}")
-    default = judge.Tolerance(options.rtol, options.floor, measures=measures)
+    default = judge.Tolerance(options.rtol, options.floor, options.atol, options.time, measures)
     special = {}
     for entry in options.column_rtol:
         name, _, value = entry.partition("=")
