@@ -55,9 +55,8 @@ def draw_zones(axes, chain):
 def add_legend(figure, contact):
     """The shades with their words; tied and broken where they occur."""
     there = set(np.unique(contact["state"]).astype(int).tolist())
-    figure.legend([Patch(facecolor=shade, edgecolor="#555555", linewidth=0.4, label=words)
-                   for number, (words, shade) in enumerate(STATES) if number < ALWAYS or number in there],
-                  [words for number, (words, _) in enumerate(STATES) if number < ALWAYS or number in there],
+    figure.legend(handles=[Patch(facecolor=shade, edgecolor="#555555", linewidth=0.4, label=words)
+                           for number, (words, shade) in enumerate(STATES) if number < ALWAYS or number in there],
                   loc=beside("lower center"), ncols=len(STATES), frameon=False, fontsize=8)
 
 

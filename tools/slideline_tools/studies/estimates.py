@@ -18,6 +18,7 @@ from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, PENALTY, RAD
 from slideline_tools.studies import sliding as sliding_study
 from slideline_tools.studies.common import colour, label, markdown_table, marker, save_small, verification
 from slideline_tools.studies.framework.job import Job, Study
+from slideline_tools.studies.framework.rules import geometric_mean
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.hertz import MODULUS, lines, order
 
@@ -184,7 +185,7 @@ def reading(runs):
                        dtype=float).dropna()
     ranks = [same["estimate"].rank().corr(same["error"].rank()) for _, same in others.groupby(["scene", "level"])]
     words = ((over, f"With a closed form the error is {over.min():.1f} to {over.max():.1f} times the estimate, "
-              f"{np.exp(np.log(over).mean()):.1f} times in the geometric mean."),
+              f"{geometric_mean(over):.1f} times in the geometric mean."),
              (orders, f"The estimate falls with the mesh in {(orders > 0.0).sum()} of {len(orders)} cases, at an order of "
               f"{orders[orders > 0.0].mean():.2f} in the mean where it does."),
              (ranks, "In sliding and ironing the ranks of estimate and roughness on one mesh agree with a coefficient of "

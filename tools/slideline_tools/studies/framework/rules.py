@@ -4,6 +4,7 @@
 Times scatter by some per cent, and means over all scenes have moved by up to 15 % between programs whose contact was the
 same in the large.
 """
+import numpy as np
 
 #: Costs of contact (means over meshes, or over scenes) that differ by less count as alike.
 COST_FACTOR = 1.25
@@ -27,3 +28,8 @@ def between(values, form="{:.2f}"):
     """'1.20 to 1.30'; one number where both ends read the same."""
     low, high = (form.format(value) for value in (min(values), max(values)))
     return low if low == high else f"{low} to {high}"
+
+
+def geometric_mean(values):
+    """The mean of factors."""
+    return float(np.exp(np.mean(np.log(values))))

@@ -4,11 +4,10 @@
 A verdict is `yes` where all answers of a claim hold, `no` where none does, else `partly`. Contact times that differ by
 less than `COST_FACTOR` count as alike, so that a repeat does not change an answer.
 """
-import numpy as np
 import pandas as pd
 
 from slideline_tools.studies.common import markdown_table
-from slideline_tools.studies.framework.rules import COST_FACTOR, between, least, share_verdict
+from slideline_tools.studies.framework.rules import COST_FACTOR, between, geometric_mean, least, share_verdict
 from slideline_tools.studies.framework.table import finished
 
 COMPARED = (1, 3, 4, 5, 6)
@@ -100,8 +99,3 @@ def remedy_verdict(first):
     if all(types == [5] for types in first):
         return "yes"
     return "partly" if any(5 in types for types in first) else "no"
-
-
-def geometric_mean(values):
-    """Geometric mean over the levels."""
-    return float(np.exp(np.mean(np.log(values))))

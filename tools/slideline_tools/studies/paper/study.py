@@ -31,15 +31,19 @@ def patch_jobs(options):
     return listed
 
 
+def meshes(options):
+    """Name, scene, level and deck of blocks, sliding and collision."""
+    return ((name, scene, level, scene.deck(level)) for name, scene in SCENES.items() for level in scene.levels
+            if level in options.levels)
+
+
 def scene_jobs(options):
     """Blocks, sliding and collision with their output; the sliding with slave and master exchanged too."""
     listed = []
-    for name, scene in SCENES.items():
-        for level in (level for level in scene.levels if level in options.levels):
-            deck = scene.deck(level)
-            words = (f"p:dtforc={4.0e-7 / level:.17g}",) if name == "sliding" else ()
-            listed += [result(f"{name}_{level}_type_{ctype}", deck, name, level, ctype, words,
-                              cost=scene.cost * level ** 3) for ctype in options.types]
+    for name, scene, level, deck in meshes(options):
+        words = (f"p:dtforc={4.0e-7 / level:.17g}",) if name == "sliding" else ()
+        listed += [result(f"{name}_{level}_type_{ctype}", deck, name, level, ctype, words,
+                          cost=scene.cost * level ** 3) for ctype in options.types]
     if 5 in options.types and 1 in options.levels:
         listed.append(result("exchanged_1_type_5", scenes.sliding(exchanged=True), "exchanged", 1, 5, cost=15.0))
     return listed
@@ -58,17 +62,11 @@ JOBS = {"patch": "patch", "block": "block", "block_implicit": "block", "sliding"
 
 def timed_jobs(options):
     """Each scene, level and type with little output; the quick study cuts the sliding short."""
-    listed = []
-    for name, scene in SCENES.items():
-        for level in (level for level in scene.levels if level in options.levels):
-            deck = scene.deck(level)
-            for ctype in sorted({1, *options.types}):
-                listed.append(Job(
-                    f"time_{name}_{level}_type_{ctype}", deck, JOBS[name],
-                    (f"ctype={ctype}", "ncpu=1", *scene.options, *(scene.quick * options.quick)),
-                    {"scene": name, "role": "time", "level": level, "type": ctype}, group=f"time_{name}_{level}",
-                    alone=True, turns=max(1, scene.turns // level), cost=scene.cost * level ** 3))
-    return listed
+    return [Job(f"time_{name}_{level}_type_{ctype}", deck, JOBS[name],
+                (f"ctype={ctype}", "ncpu=1", *scene.options, *(scene.quick * options.quick)),
+                {"scene": name, "role": "time", "level": level, "type": ctype}, group=f"time_{name}_{level}",
+                alone=True, turns=max(1, scene.turns // level), cost=scene.cost * level ** 3)
+            for name, scene, level, deck in meshes(options) for ctype in sorted({1, *options.types})]
 
 
 def measure(job, folder):

@@ -5,7 +5,7 @@ import pandas as pd
 from slideline_tools import UserError
 from slideline_tools.contact_types import HARD, IMPLICIT
 from slideline_tools.studies.common import label, markdown_table, page_of
-from slideline_tools.studies.framework.rules import RUN_FACTOR, between, least
+from slideline_tools.studies.framework.rules import RUN_FACTOR, between, geometric_mean, least
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.speed_accuracy.charts import sorted_types
 from slideline_tools.studies.speed_accuracy.points import (COSTS, errors_of, geometric, over,
@@ -85,9 +85,7 @@ def target_cell(rows):
 def mesh_table(errors):
     """Smallest, largest and mean error of the types on each mesh."""
     groups = errors.groupby(["scene", "measure", "level"], sort=False)["judged"]
-    found = groups.agg(["min", "max"]).reset_index()
-    found["mean"] = geometric(errors["judged"], [errors[name] for name in (
-        "scene", "measure", "level")]).reindex(groups.min().index).to_numpy()
+    found = groups.agg(min="min", max="max", mean=geometric_mean).reset_index()
     found.insert(0, "error", [title_of(*pair) for pair in zip(found["scene"], found["measure"])])
     return markdown_table(found.drop(columns=["scene", "measure"]))
 
