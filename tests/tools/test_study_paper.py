@@ -13,9 +13,7 @@ from slideline_tools.studies import __main__ as command
 from slideline_tools.studies import block, collision, common, sliding
 from slideline_tools.studies.framework import rules, times
 from slideline_tools.studies.framework.job import Options, interleave, part_of
-from slideline_tools.studies.paper import claims, costs
-from slideline_tools.studies.paper import page as pages
-from slideline_tools.studies.paper import study
+from slideline_tools.studies.paper import claims, costs, study
 
 PHASES = """phase,seconds,calls,share
 elements,0.5,11,0.1
@@ -295,7 +293,7 @@ def whole_table():
 
 
 def test_page():
-    page = pages.page(whole_table())
+    page = study.page(whole_table())
     assert re.search(r"\| 5 NTS-mAR \| 5.00 \| 5.00 \| 5.00 \(1.22\) \| 5.00 \(1.09\)", page)
     # 4 s at half the usual pace for 9 steps of 19 slave nodes; the paper's 62 s for 150 000.
     assert f"| Sliding, N_r 1 | 8000 | {8e9 / 9 / 19:.4g} | {62e6 / 150e3 / 19:.4g} | 10.0 to 60.9 %" in page
@@ -304,15 +302,15 @@ def test_page():
 
 
 def test_a_page_of_some_runs_has_no_claims():
-    page = pages.page(whole_table().query("role == 'result'"))
+    page = study.page(whole_table().query("role == 'result'"))
     assert "## Claims" not in page and "contact costs" not in page and "## Section 4.2" in page
 
 
 def test_the_picture_of_costs_is_the_same_on_every_run(tmp_path):
     table = timed_table(proportional).query("scene == 'block'")
-    pages.chart(table, tmp_path)
+    study.chart(table, tmp_path)
     first = (tmp_path / "paper_tables.png").read_bytes()
-    pages.chart(table, tmp_path)
+    study.chart(table, tmp_path)
     assert (tmp_path / "paper_tables.png").read_bytes() == first and len(first) < 100_000
     assert [path.name for path in tmp_path.iterdir()] == ["paper_tables.png"]
 

@@ -12,7 +12,7 @@ from slideline_tools.contact_types import ALL_TYPES, SERIES
 from slideline_tools.studies import __main__ as command, block, chooses
 from slideline_tools.studies.common import verification
 from slideline_tools.studies.framework.job import Options, interleave
-from slideline_tools.studies.speed_accuracy import page as pages, points as fronts, reference, scenes, study
+from slideline_tools.studies.speed_accuracy import points as fronts, reference, scenes, study
 
 
 # ---- front and comparison ----------------------------------------------------------------------
@@ -188,7 +188,7 @@ def made_table(types_of=tuple(SERIES)):
 
 
 def test_page():
-    text = pages.page(made_table())
+    text = study.page(made_table())
     # Costs and errors over type 1, net moment; of implicit penalty over type 7.
     assert re_cells(text, "4 VTS-PPT") == ["yes", "4.00 (4.00)", "1.16 (1.14 to 1.17)", "0.25", "0.27", "0.25", "0.29", "0.002"]
     assert re_cells(text.split("## Over type 7")[1], "7h PUNIT 4, PEN < 0")[1:4] == ["1.29 (1.29)", "1.08 (1.07 to 1.08)", "0.78"]
@@ -207,9 +207,9 @@ def re_cells(text, name):
 
 def test_page_of_one_type_alone():
     table = made_table((5,))
-    assert "nan" not in pages.page(table[table["scene"] != "collision"])
+    assert "nan" not in study.page(table[table["scene"] != "collision"])
     with pytest.raises(UserError, match="no finished runs"):
-        pages.page(table[:0])
+        study.page(table[:0])
 
 
 def test_charts(tmp_path, plain_pictures):
