@@ -11,8 +11,9 @@ def describe(results):
             lines.append(f"{name:<10} {results.run[name]}")
     lines.append(f"mesh       {results.n_node} nodes, {results.n_cell} elements"
                  + parts_text(results))
-    lines += states_text(results)
-    if results.n_state:
+    times = results.times
+    lines.append(f"states     {len(times)}, time {times[0]:g} to {times[-1]:g}" if len(times) else "states     none")
+    if len(times):
         lines.append("fields     over all states: lowest, highest")
         for kind, names, field in (("node", results.point_fields, results.point_field),
                                    ("cell", results.cell_fields, results.cell_field)):
@@ -26,13 +27,6 @@ def parts_text(results):
         return ""
     parts, counts = np.unique(results.cell_field("part_id")[0], return_counts=True)
     return "; " + ", ".join(f"part {part}: {count}" for part, count in zip(parts, counts))
-
-
-def states_text(results):
-    times = results.times
-    if not len(times):
-        return ["states     none"]
-    return [f"states     {len(times)}, time {times[0]:g} to {times[-1]:g}"]
 
 
 def field_text(kind, name, values):
