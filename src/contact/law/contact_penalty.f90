@@ -131,25 +131,22 @@ contains
   end function mean_length
 
   !> K L/A of one side, N/m^2: bulk modulus and area of the element behind each segment, mean over
-  !> the length of the surface.
+  !> the segments. By their number, so that a coarse far side, which is never touched, does not
+  !> make the springs of the fine part soft.
   pure function side_stiffness(surface, model) result(stiffness)
     type(surface_t), intent(in) :: surface
     type(model_t), intent(in) :: model
     real(wp) :: stiffness
-    real(wp) :: total, length
     integer :: i
 
     stiffness = 0.0_wp
-    total = 0.0_wp
     do i = 1, surface%n_segment
-      length = initial_length(model, surface, i)
       associate (part => model%parts(model%mesh%element_part(surface%segment_element(i))))
-        stiffness = stiffness + length*model%materials(part%material)%bulk*length &
+        stiffness = stiffness + model%materials(part%material)%bulk*initial_length(model, surface, i) &
           /area_behind(model, surface, i)
       end associate
-      total = total + length
     end do
-    stiffness = stiffness/total
+    stiffness = stiffness/surface%n_segment
   end function side_stiffness
 
   !> Largest bulk modulus behind a surface over the smallest.
