@@ -378,7 +378,7 @@ def speed_accuracy_figure():
             is_exact = row[1] == "yes"
             axes.plot(time, error, "o", markersize=13, color=MASTER, markerfacecolor=MASTER if is_exact else "white")
             axes.text(time, error, row[0].split()[0], ha="center", va="center_baseline", fontsize=9, color="white" if is_exact else INK)
-        axes.set(yscale="log", xlim=(0.8, 2.8), ylim=(0.05, 1.5), xlabel="contact time over type 1")
+        axes.set(yscale="log", xlim=(0.8, 4.0), ylim=(0.05, 1.5), xlabel="contact time over type 1")
         axes.set_yticks([0.1, 0.3, 1.0], ["0.1", "0.3", "1"])
         axes.set_title(name, fontsize=10, loc="left", color=INK)
         axes.grid(True, linewidth=0.3, color="#bbbbbb")

@@ -112,9 +112,10 @@ SCENES = {
     "stick-slip": Scene(lambda: verified("", "block_on_belt", 5, module="stick_slip"), dict.fromkeys((
         "nodout:ux:largest", "nodout:ux:smallest", "nodout:ux:mean", "glstat:friction:end"))),
     "impact of spheres": Scene(lambda: verified("hertz_impact", "collision", 7, edge=0.2e-3, grown=(7, 9)), dict.fromkeys((
-        FORCE.format("fy", "largest"), FORCE.format("fy", "impulse"), "glstat:internal:largest"))),
+        FORCE.format("fy", "largest"), FORCE.format("fy", "impulse"), "glstat:internal:largest")), finest=6),
     "ironing": Scene(lambda: verified("ironing", "ironing", 7, 60.0, 120.0, reach=2.0, level=1), dict.fromkeys((
-        FORCE.format("fy", "at=0.072"), FORCE.format("fy", "impulse"), FORCE.format("fx", "impulse"), "glstat:friction:end"))),
+        FORCE.format("fy", "at=0.072"), FORCE.format("fy", "impulse"), FORCE.format("fx", "impulse"), "glstat:friction:end")),
+        finest=6),
     "penetration": Scene(lambda: verified("penetration", "plate_and_rod", 300.0, 1.0e-3), dict.fromkeys((
         "matsum:momentum_y@part=2:end", "glstat:internal:end", "glstat:eroded:end"))),
     "folding tube": Scene(lambda: verified("self_contact", "tube", 7, True, module="scenes", rows=24), dict.fromkeys((
