@@ -249,3 +249,28 @@ def test_a_circle_too_coarse_for_arcs_is_named(slideline, tmp_path, hub, words, 
     assert done.returncode == 0, done.stderr
     assert ("a circle of its master surface, whose segments turn by up to 2.250000E+01 degrees, more than SMOOTH (16)"
             in (tmp_path / "job.log").read_text()) == warns
+
+
+def fan(sides):
+    """A punch on a body whose elements are 0.5 mm high at its face and 200 mm below; contact of `sides`, parts or faces."""
+    deck = Deck("fan").add("*CONTROL_TERMINATION", (1.0e-8,)).add("*SECTION_SHELL", (1, 13), (1.0,))
+    coordinates, quads = grid(20, 10, 20.0, 10.0, (-10.0, -10.0))
+    below = np.maximum(-coordinates[:, 1] - 4.0, 0.0)
+    coordinates[:, 1] = np.where(below > 0.0, -2.0 - 200.0 * below, 0.5 * coordinates[:, 1])
+    coordinates[:, 0] *= 1.0 + 16.0 * below
+    bodies = (coordinates, quads), grid(10, 20, 5.0, 10.0, (-2.6, 1.0e-4))
+    for part, ((nodes, elements), face) in enumerate(zip(bodies, (0.0, 1.0e-4)), 1):
+        deck.add("*PART", "body", (part, 1, part)).elastic(*MATERIALS["steel"], part)
+        ids = deck.mesh(nodes, elements, part=part)
+        deck.add("*SET_PART_LIST", (part,), (part,)).node_set(part, ids[np.abs(nodes[:, 1] - face) < 1.0e-9])
+    return deck.add(STOCK + "SURFACE_TO_SURFACE", (2, 1) if sides == "parts" else (-2, -1)).output(glstat=1.0e-8).text()
+
+
+def test_a_coarse_far_side_does_not_soften_the_springs(slideline, tmp_path):
+    """The built-in penalty of parts is near that of the faces that touch; as a mean over the length it was 50 times softer."""
+    found = []
+    for sides in ("parts", "faces"):
+        done = slideline(f"d={sides}", deck=fan(sides))
+        assert done.returncode == 0, done.stderr
+        found.append(float(re.search(r"penalty: .*?= (\S+) per unit length", (tmp_path / sides / "job.log").read_text()).group(1)))
+    assert 0.25 < found[0] / found[1] < 4.0

@@ -11,7 +11,8 @@ module initial_status_m
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body, initial_length, &
     half_thickness
   use projection_m, only : projection_t, closest_projection, local_coordinates
-  use geometry_m, only : local_coordinates_t, closest_distance, local_gap, local_normal
+  use geometry_m, only : local_coordinates_t, closest_distance, local_gap, local_normal, &
+    segment_length, separation
   use entry_m, only : is_opposed, segments_of
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -186,21 +187,37 @@ contains
     type(element_finder_t) :: finder
     logical :: inside
     integer :: i, s, nearest
-    real(wp) :: square, least
+    real(wp) :: square, least, reach, longest, point(4), d(2)
 
     call begin_asking(model, contact%slave%segment_element, contact%master%nodes, finder, &
       inside_tests)
+    nearest = 0
+    longest = 0.0_wp
+    do s = 1, contact%slave%n_segment
+      longest = max(longest, segment_length(positions(:, contact%slave%segments(1, s)), &
+        positions(:, contact%slave%segments(2, s))))
+    end do
     do i = 1, contact%master%n_node
       associate (node => contact%master%nodes(i))
         call ask_inside(finder, model, model%mesh%coordinates(:, node), [node], inside, &
           inside_tests)
         if (.not. inside) cycle
+        point = positions(:, contact%slave%n_node + i)
+        ! The segment found for the node before is near this one too.
+        reach = sqrt(huge(1.0_wp))
+        if (nearest > 0) then
+          if (all(contact%slave%nodes(contact%slave%segments(:, nearest)) /= node)) &
+            reach = (1.0_wp + 1.0e-6_wp)*(longest + sqrt(closest_distance(local_coordinates( &
+            contact%slave, positions, point, nearest))))
+        end if
         nearest = 0
         least = huge(1.0_wp)
         do s = 1, contact%slave%n_segment
+          ! Most are farther away, which their first nodes tell at little cost.
+          d = separation(positions(:, contact%slave%segments(1, s)), point)
+          if (d(1)**2 + d(2)**2 > reach**2) cycle
           if (any(contact%slave%nodes(contact%slave%segments(:, s)) == node)) cycle
-          square = closest_distance(local_coordinates(contact%slave, positions, &
-            positions(:, contact%slave%n_node + i), s))
+          square = closest_distance(local_coordinates(contact%slave, positions, point, s))
           if (square >= least) cycle
           least = square
           nearest = s
