@@ -84,8 +84,8 @@ def test_a_machine_that_can_not_count_says_so(monkeypatch):
 def test_two_counts_of_a_run_agree(tmp_path):
     """Beside whatever else runs here; and contact is a small part of a short collision, but not nothing.
 
-    The steps agree to 1e-6, all in all to 1e-3: how often waiting rows of tables go to the disk, and how often someone looks
-    for requests, is decided by the clock. Each has a folder of its own: files that are there already are replaced.
+    The steps agree to 1e-6, all in all to 1e-2: how often waiting rows of tables go to the disk, and how often the status is written
+    (1e5 of 3e7 instructions), is decided by the clock. Each has a folder of its own: files that are there already are replaced.
     """
     if "SLIDELINE" not in os.environ:
         pytest.skip("SLIDELINE is not set")
@@ -102,7 +102,7 @@ def test_two_counts_of_a_run_agree(tmp_path):
         if "unrecognised" not in str(problem) and "Illegal" not in str(problem) and "SIGILL" not in str(problem):
             raise
         pytest.skip("this program has instructions that callgrind does not know")
-    assert first.total > 1e6 and abs(first.total / second.total - 1.0) < 1e-3
+    assert first.total > 1e6 and abs(first.total / second.total - 1.0) < 1e-2
     for part, count in first.parts.items():
         assert abs(count / second.parts[part] - 1.0) < 1e-6, part
     if first.parts:
