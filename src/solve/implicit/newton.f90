@@ -32,6 +32,10 @@ module newton_m
   !> Share of the previous residual above which it counts as stagnant.
   real(wp), parameter :: stagnation = 0.3_wp
 
+  !> Energy of an iteration over that of the first below which a stagnant residual is round-off: at
+  !> a vertex that turns by 1e-7 it decides on which segment a node is.
+  real(wp), parameter :: idle_energy = 1.0e-14_wp
+
   !> Result of a step.
   type :: outcome_t
     logical :: converged = .false.
@@ -302,7 +306,8 @@ contains
     converged = implicit%is_linear .or. now%residual <= floor_margin*now%floor &
       .or. (now%residual <= floor_margin*now%gap_floor .and. now%residual > stagnation*now%before)
     if (converged) return
-    converged = first%energy > 0.0_wp .and. now%energy <= implicit%energy_tolerance*first%energy
+    converged = first%energy > 0.0_wp .and. (now%energy <= implicit%energy_tolerance*first%energy &
+      .or. (now%energy <= idle_energy*first%energy .and. now%residual > stagnation*now%before))
     if (implicit%step_tolerance > 0.0_wp) converged = converged .and. now%step &
       <= implicit%step_tolerance*step
     if (implicit%residual_tolerance > 0.0_wp) converged = converged .and. now%residual &
