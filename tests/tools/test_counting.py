@@ -84,8 +84,8 @@ def test_a_machine_that_can_not_count_says_so(monkeypatch):
 def test_two_counts_of_a_run_agree(tmp_path):
     """Beside whatever else runs here; and contact is a small part of a short collision, but not nothing.
 
-    The steps agree to 1e-6, all in all to 1e-2: how often waiting rows of tables go to the disk, and how often the status is written
-    (1e5 of 3e7 instructions), is decided by the clock. Each has a folder of its own: files that are there already are replaced.
+    The steps agree to 1e-6, all in all to 1e-2: the clock decides how often the file of the status is written, 73,000 of 3e7
+    instructions each time, one or two more on a busy machine. Each has a folder of its own: files that are there already are replaced.
     """
     if "SLIDELINE" not in os.environ:
         pytest.skip("SLIDELINE is not set")

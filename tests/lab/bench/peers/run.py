@@ -43,8 +43,8 @@ QUICK_COLLISION = 10
 TYPES = (2, 5, 7)
 KRATOS_CONTACT = "mortar, augmented Lagrangian"
 PUSH = 1.0e-4                               # of the upper face of the block, m
-#: Energy of the last iteration over that of the first: tighter than in the other programs. What is left by default, 1e-20, round-off
-#: may keep from being reached where slave nodes lie opposite master nodes.
+#: Energy of the last iteration over that of the first. Round-off may keep the default, 1e-20, from being reached where slave nodes lie
+#: opposite master nodes.
 EQUILIBRIUM = "*CONTROL_IMPLICIT_SOLUTION\n12,11,15,0.0,1.0e-12\n"
 ONE = {**os.environ, "OMP_NUM_THREADS": "1", "CCX_NPROC_EQUATION_SOLVER": "1"}
 
