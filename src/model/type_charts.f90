@@ -35,8 +35,8 @@ module type_charts_m
     max(patch, sliding), max(patch, ironing)], [n_type, 4])
 
   !> Contact time of each type over the time of type 1.
-  real(wp), parameter :: published_time(n_type) = [1.0_wp, 1.08_wp, 1.44_wp, 1.83_wp, 2.06_wp, &
-    2.43_wp, 2.58_wp]
+  real(wp), parameter :: published_time(n_type) = [1.0_wp, 1.12_wp, 1.62_wp, 2.84_wp, 2.47_wp, &
+    3.27_wp, 3.6_wp]
 
 contains
 

@@ -14,6 +14,7 @@ from conftest import numbers
 from meshes import Deck, grid
 
 from slideline_tools.contact_types import ALL_TYPES
+from slideline_tools.scenes.patch import even_lines, patch, patch_grids
 
 NORMAL = "N o r m a l    t e r m i n a t i o n"
 YIELD = 1.0e3
@@ -541,3 +542,13 @@ def test_energies_that_do_not_add_up_end_an_implicit_run(slideline):
     deck.lines[deck.lines.index("*CONTROL_TERMINATION") + 1] = "1.0, 0, 0, 5.0"
     done = slideline("d=x", deck=deck)
     assert done.returncode == 2 and "ENDENG" in done.stderr
+
+
+@pytest.mark.parametrize("ctype", (1, 2, 3))
+def test_a_node_that_round_off_moves_between_two_segments_is_in_equilibrium(slideline, tmp_path, ctype):
+    """Blocks of 40 and 32 columns under 1 Pa: their middle nodes lie opposite each other, and each iteration of the last turns of
+    1e-7 found the node on the other segment."""
+    grids = patch_grids(even_lines(40), even_lines(32))
+    done = slideline("d=out", f"ctype={ctype}", deck=patch(grids=grids, static=True, penalty=1.0e6))
+    assert done.returncode == 0, done.stderr
+    assert abs(numbers(tmp_path / "out/job.rcforc.csv", "fy")[-1]) == pytest.approx(1.0, rel=1e-9)

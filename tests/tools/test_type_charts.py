@@ -25,21 +25,12 @@ def column(page, heading, place, start=""):
 
 
 def test_estimates():
-    """The page names the figures of the program beside those of the study."""
-    cells = column("choosing", "## What it chooses by", 6, "| type | cylinder, N_r 1, 2, 3 |")
-    found = zip(*([float(figure) / 100.0 for figure in cells[number].split(",")] for number in range(1, 8)))
-    for name, figures in zip(("hertz", "sliding", "ironing"), found, strict=True):
-        assert charted(name) == pytest.approx(list(figures), rel=1e-9)
-
-
-def test_the_study_agrees_with_the_program():
-    """Within 6 %, but where an element of ironing folds (types 1 and 2), of which the page tells."""
-    largest = [[max(float(figure) for figure in cell.split(",")) / 100.0 for cell in cells]
-               for cells in zip(*(column("choosing", "## What it chooses by", place, "| type | cylinder, N_r 1, 2, 3 |").values()
-                                  for place in (2, 3, 4, 5)))]
-    studied = {"hertz": [max(one[:2]) for one in largest], "sliding": [one[2] for one in largest], "ironing": [one[3] for one in largest]}
-    assert {(name, k + 1) for name, figures in studied.items() for k, figure in enumerate(figures)
-            if charted(name)[k] != pytest.approx(figure, rel=0.06)} == {("ironing", 1), ("ironing", 2)}
+    """The largest of each kind of scene; other processors and later mends may move the study by 2 %."""
+    largest = [[max(float(figure) for figure in cell.split(",")) / 100.0 for cell in
+                column("choosing", "## What it chooses by", place, "| type | cylinder, N_r 1, 2, 3 |").values()] for place in (2, 3, 4, 5)]
+    assert charted("hertz") == pytest.approx([max(both) for both in zip(*largest[:2], strict=True)], rel=0.02)
+    assert charted("sliding") == pytest.approx(largest[2], rel=0.02)
+    assert charted("ironing") == pytest.approx(largest[3], rel=0.02)
 
 
 def test_patch():
@@ -55,9 +46,8 @@ def test_patch():
 
 
 def test_times():
-    """The page of the choice names the times of the program; the study has types 4 and 5 the other way round."""
-    page = (ROOT / "doc/studies/choosing.md").read_text(encoding="utf-8")
-    named = re.search(r"contact times of release 0\.2\.0: ([\d., ]+\d)", page)[1]
-    assert charted("published_time") == sorted(map(float, named.split(", "))) == sorted(charted("published_time"))
-    times = column("speed_accuracy", "## What to choose", 3, "| type | exact pressure")
-    assert sorted(range(1, 8), key=lambda number: float(times[number].split()[0])) == list(CHEAPEST_FIRST) == [1, 2, 3, 5, 4, 6, 7]
+    """Contact times over that of type 1, which differ with the processor, in the order of the study and of `answer`."""
+    times = {number: float(cell.split()[0]) for number, cell in column("speed_accuracy", "## What to choose", 3, "| type | exact pressure").items()}
+    assert charted("published_time") == pytest.approx([times[number] for number in range(1, 8)], rel=0.15)
+    for figures in (times, dict(enumerate(charted("published_time"), 1))):
+        assert tuple(sorted(figures, key=figures.get)) == CHEAPEST_FIRST
