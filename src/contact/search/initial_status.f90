@@ -11,11 +11,11 @@ module initial_status_m
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body, initial_length, &
     half_thickness
   use projection_m, only : projection_t, closest_projection, local_coordinates
-  use geometry_m, only : local_coordinates_t, closest_distance, local_gap, local_normal, &
-    segment_length, separation
+  use geometry_m, only : local_coordinates_t, closest_distance, local_gap, local_normal
   use entry_m, only : is_opposed, segments_of
   use kinds_m, only : wp
   use model_m, only : model_t
+  use near_segments_m, only : near_segments_t, cursor_t, sort_segments, start_near, next_near
   use remote_state_m, only : inside_tests_t
   use surfaces_m, only : surface_t, has_closed_chain
   implicit none
@@ -128,7 +128,8 @@ contains
         + (points(1:2, i) - positions(1:2, at + 1)), own%nodes(carriers(own, segments)), inside, &
         inside_tests)
       if (.not. inside) cycle
-      projection = closest_opposed(status, model, own, other, positions, points(:, i), i)
+      if (.not. allocated(near%at)) call sort_segments(other, positions(:, at + 1:), near)
+      projection = closest_opposed(status, model, own, other, near, positions, points(:, i), i)
       if (projection%segment == 0) cycle
       status%segment(i) = projection%segment
       status%xi(i) = projection%xi
@@ -142,15 +143,18 @@ contains
 
   !> Projection of a point on the closest of all segments that it is behind and that are opposed to
   !> it; segment 0: none.
-  pure function closest_opposed(status, model, own, other, positions, point, i) result(projection)
+  pure function closest_opposed(status, model, own, other, near, positions, point, i) &
+    result(projection)
     type(contact_status_t), intent(in) :: status
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, other
+    type(near_segments_t), intent(in) :: near !! of the other surface
     real(wp), intent(in), contiguous :: positions(:, :)
     real(wp), intent(in) :: point(4)
     integer, intent(in) :: i
     type(projection_t) :: projection
     type(local_coordinates_t) :: local
+    type(cursor_t) :: cursor
     real(wp) :: square, least
     integer :: m, closest
     logical :: is_closed
@@ -158,14 +162,18 @@ contains
     closest = 0
     least = huge(1.0_wp)
     is_closed = has_closed_chain(other)
+    cursor = start_near(near, point)
     associate (polyline => positions(:, status%pass%other_at + 1:))
-      do m = 1, other%n_segment
+      do
+        call next_near(near, sqrt(least), cursor, m)
+        if (m == 0) exit
         if (status%pass%is_self .and. status%pass%n_on_segment == 0) then
           if (any(other%segments(:, m) == i)) cycle
         end if
         local = local_coordinates(other, polyline, point, m)
         square = closest_distance(local)
-        if (local%across >= 0.0_wp .or. square >= least) cycle
+        if (local%across >= 0.0_wp .or. square > least) cycle
+        if (.not. square < least .and. m > closest) cycle
         if (.not. is_opposed(status%pass, own, positions, i, local_normal(local))) cycle
         if (is_closed .and. -local_gap(local) > 2.0_wp*half_thickness(model, other, m)) cycle
         closest = m
@@ -186,39 +194,28 @@ contains
     type(inside_tests_t), intent(inout), optional :: inside_tests
     type(element_finder_t) :: finder
     logical :: inside
+    type(near_segments_t) :: near
+    type(cursor_t) :: cursor
     integer :: i, s, nearest
-    real(wp) :: square, least, reach, longest, point(4), d(2)
+    real(wp) :: square, least
 
     call begin_asking(model, contact%slave%segment_element, contact%master%nodes, finder, &
       inside_tests)
-    nearest = 0
-    longest = 0.0_wp
-    do s = 1, contact%slave%n_segment
-      longest = max(longest, segment_length(positions(:, contact%slave%segments(1, s)), &
-        positions(:, contact%slave%segments(2, s))))
-    end do
     do i = 1, contact%master%n_node
-      associate (node => contact%master%nodes(i))
+      associate (node => contact%master%nodes(i), point => positions(:, contact%slave%n_node + i))
         call ask_inside(finder, model, model%mesh%coordinates(:, node), [node], inside, &
           inside_tests)
         if (.not. inside) cycle
-        point = positions(:, contact%slave%n_node + i)
-        ! The segment found for the node before is near this one too.
-        reach = sqrt(huge(1.0_wp))
-        if (nearest > 0) then
-          if (all(contact%slave%nodes(contact%slave%segments(:, nearest)) /= node)) &
-            reach = (1.0_wp + 1.0e-6_wp)*(longest + sqrt(closest_distance(local_coordinates( &
-            contact%slave, positions, point, nearest))))
-        end if
+        if (.not. allocated(near%at)) call sort_segments(contact%slave, positions, near)
         nearest = 0
         least = huge(1.0_wp)
-        do s = 1, contact%slave%n_segment
-          ! Most are farther away, which their first nodes tell at little cost.
-          d = separation(positions(:, contact%slave%segments(1, s)), point)
-          if (d(1)**2 + d(2)**2 > reach**2) cycle
+        cursor = start_near(near, point)
+        do
+          call next_near(near, sqrt(least), cursor, s)
+          if (s == 0) exit
           if (any(contact%slave%nodes(contact%slave%segments(:, s)) == node)) cycle
           square = closest_distance(local_coordinates(contact%slave, positions, point, s))
-          if (square >= least) cycle
+          if (square > least .or. (.not. square < least .and. s > nearest)) cycle
           least = square
           nearest = s
         end do
