@@ -117,6 +117,7 @@ contains
     type(element_finder_t) :: finder
     type(projection_t) :: projection
     logical :: inside
+    type(near_segments_t) :: near
     integer :: i, segments(2), at
 
     at = status%pass%other_at
