@@ -109,7 +109,7 @@ def test_penalty_that_is_left_to_the_program(slideline, chosen, tmp_path, implic
 
 
 @pytest.mark.parametrize("target, wanted, words, scene", [
-    (0.2, 4, ", the cheapest type within the target", {"columns": (3, 4)}),
+    (0.2, 5, ", the cheapest type within the target", {"columns": (3, 4)}),
     (0.6, 2, ", the cheapest type within the target", {"columns": (3, 4)}),
     (0.01, 5, "no type reaches", {"columns": (3, 4)}),
     (0.001, 2, "flat matching faces", {}),

@@ -130,23 +130,26 @@ contains
     length = length/surface%n_segment
   end function mean_length
 
-  !> K L/A of one side, N/m^2: bulk modulus and area of the element behind each segment, mean over
-  !> the segments. By their number, so that a coarse far side, which is never touched, does not
-  !> make the springs of the fine part soft.
+  !> K L/A of one side, N/m^2: bulk modulus and area of the element behind each segment, mean with
+  !> the weights L/A. Elements of one size so count by length; a coarse far side, which nothing
+  !> touches, hardly counts.
   pure function side_stiffness(surface, model) result(stiffness)
     type(surface_t), intent(in) :: surface
     type(model_t), intent(in) :: model
     real(wp) :: stiffness
+    real(wp) :: total, weight
     integer :: i
 
     stiffness = 0.0_wp
+    total = 0.0_wp
     do i = 1, surface%n_segment
+      weight = initial_length(model, surface, i)/area_behind(model, surface, i)
       associate (part => model%parts(model%mesh%element_part(surface%segment_element(i))))
-        stiffness = stiffness + model%materials(part%material)%bulk*initial_length(model, surface, i) &
-          /area_behind(model, surface, i)
+        stiffness = stiffness + weight*model%materials(part%material)%bulk*weight
       end associate
+      total = total + weight
     end do
-    stiffness = stiffness/surface%n_segment
+    stiffness = stiffness/total
   end function side_stiffness
 
   !> Largest bulk modulus behind a surface over the smallest.
