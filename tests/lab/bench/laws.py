@@ -33,7 +33,7 @@ but for the rows *elastic*, where none does: a chunk that stays elastic forms no
 {table}
 - 098 and 015 form the flow stress of Johnson and Cook at the end of the step by Newton's method, 16 elements at once, with logarithms and powers of their own
   (`src/base/vector_functions.f90`). A call of the library for each took 2111 instructions more than elastic for 098, 2371 for 015 and 2448 with damage.
-- 015 and whatever may fail keep energy, pressure and volume of the element (an equation of state, `p = -K ln v` where the deck has none): some 85 instructions.
+- 015 and whatever may fail keep energy, pressure and volume of the element (an equation of state, `p = -K ln v` where the deck has none): 85 to 110 instructions.
 - 007, 027 and 063 give the whole stress, the first two with bounds of their stiffness for the step limit.
 """
 COPPER = (8930.0, 46.0e9, 124.0e9, 0.34)
