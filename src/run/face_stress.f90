@@ -153,7 +153,8 @@ contains
       depth = dot_product(middle - centre_of(model, state, element), normal)
       beyond_depth = dot_product(middle - centre_of(model, state, beyond), normal)
     end associate
-    if (.not. beyond_depth > 2.0_wp*depth) return ! elements that fold: the difference would be multiplied
+    ! Where elements fold a small difference of depths would multiply that of the pressures.
+    if (.not. beyond_depth - depth > abs(depth)) return
     pressure = pressure + (pressure - normal_pressure(model, state, beyond, normal)) &
       *(depth/(beyond_depth - depth))
   end function face_pressure

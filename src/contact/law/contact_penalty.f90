@@ -131,23 +131,28 @@ contains
   end function mean_length
 
   !> K L/A of one side, N/m^2: bulk modulus and area of the element behind each segment, mean with
-  !> the weights L/A. Elements of one size so count by length; a coarse far side, which nothing
-  !> touches, hardly counts.
+  !> K L over the sum of squares of the element's sides as weight. Elements of one size and material
+  !> so count by length; what is coarse or soft beside others and is not touched counts little, and
+  !> a sliver no more than its neighbours.
   pure function side_stiffness(surface, model) result(stiffness)
     type(surface_t), intent(in) :: surface
     type(model_t), intent(in) :: model
     real(wp) :: stiffness
-    real(wp) :: total, weight
+    real(wp) :: x(2, 4), weight, total
     integer :: i
 
     stiffness = 0.0_wp
     total = 0.0_wp
     do i = 1, surface%n_segment
-      weight = initial_length(model, surface, i)/area_behind(model, surface, i)
-      associate (part => model%parts(model%mesh%element_part(surface%segment_element(i))))
-        stiffness = stiffness + weight*model%materials(part%material)%bulk*weight
+      associate (element => surface%segment_element(i), length => initial_length(model, surface, i))
+        associate (bulk => model%materials(model%parts(model%mesh%element_part(element))%material) &
+          %bulk)
+          x = model%mesh%coordinates(:, model%mesh%element_nodes(:, element))
+          weight = bulk*length/sum((x - cshift(x, 1, 2))**2)
+          stiffness = stiffness + weight*bulk*length/area_behind(model, surface, i)
+          total = total + weight
+        end associate
       end associate
-      total = total + weight
     end do
     stiffness = stiffness/total
   end function side_stiffness

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> The segments of a surface from near a point outwards, sorted once along the longer side of their
-!> box: the closest of them is found without asking all (doc/theory/contact.md, section 3.4).
+!> box: the closest of them is found without asking those that are farther away along it.
 module near_segments_m
   use kinds_m, only : wp, long
   use sorting_m, only : sorted_order
@@ -20,8 +20,7 @@ module near_segments_m
   !> What has been asked so far: those between `low` and `high`.
   type :: cursor_t
     real(wp) :: x = 0.0_wp            !! of the point, m
-    integer :: low = 0
-    integer :: high = 1
+    integer :: low = 0, high = 0
   end type cursor_t
 
 contains

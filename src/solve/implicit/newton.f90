@@ -32,9 +32,10 @@ module newton_m
   !> Share of the previous residual above which it counts as stagnant.
   real(wp), parameter :: stagnation = 0.3_wp
 
-  !> Energy of an iteration over that of the first below which a stagnant residual is round-off: at
-  !> a vertex that turns by 1e-7 it decides on which segment a node is.
-  real(wp), parameter :: idle_energy = 1.0e-14_wp
+  !> Share of the contact forces below which a residual that does not fall any more is round-off:
+  !> where a vertex turns by 1e-7, the last digit of a position decides on which segment a node is.
+  !> Its square is the share of the first energy.
+  real(wp), parameter :: idle_share = 1.0e-7_wp
 
   !> Result of a step.
   type :: outcome_t
@@ -52,6 +53,7 @@ module newton_m
     real(wp) :: residual = huge(1.0_wp) !! norm of R
     integer :: worst = 0          !! equation of the largest entry of R
     real(wp) :: before = huge(1.0_wp) !! norm of R one iteration before
+    real(wp) :: contact = 0.0_wp  !! norm of the contact forces
     real(wp) :: floor = 0.0_wp    !! round-off of R from forces and displacements
     real(wp) :: gap_floor = 0.0_wp !! upper estimate of the round-off, with positions in gaps
     real(wp) :: step = 0.0_wp     !! norm of dU
@@ -239,6 +241,7 @@ contains
     scales = body_scales(state%rigids)
     now%residual = norm2(u)
     now%worst = maxloc(abs(u), 1)
+    now%contact = norm2(magnitudes(abs(trial%contact), 0.0_wp*scales))
     u = abs(free_entries(step%equations, trial%motion(1:2, :), scales*trial%bodies))
     if (allocated(trial%elements%start_dilatation)) u = u + free_entries(step%equations, &
       stage_displacements(model, trial), 0.0_wp*scales)
@@ -307,7 +310,8 @@ contains
       .or. (now%residual <= floor_margin*now%gap_floor .and. now%residual > stagnation*now%before)
     if (converged) return
     converged = first%energy > 0.0_wp .and. (now%energy <= implicit%energy_tolerance*first%energy &
-      .or. (now%energy <= idle_energy*first%energy .and. now%residual > stagnation*now%before))
+      .or. (now%energy <= idle_share**2*first%energy .and. now%residual <= idle_share*now%contact &
+      .and. now%residual > stagnation*now%before))
     if (implicit%step_tolerance > 0.0_wp) converged = converged .and. now%step &
       <= implicit%step_tolerance*step
     if (implicit%residual_tolerance > 0.0_wp) converged = converged .and. now%residual &
