@@ -158,11 +158,9 @@ contains
     type(cursor_t) :: cursor
     real(wp) :: square, least
     integer :: m, closest
-    logical :: is_closed
 
     closest = 0
     least = huge(1.0_wp)
-    is_closed = has_closed_chain(other)
     cursor = start_near(near, point)
     associate (polyline => positions(:, status%pass%other_at + 1:))
       do
@@ -176,7 +174,7 @@ contains
         if (local%across >= 0.0_wp .or. square > least) cycle
         if (.not. square < least .and. m > closest) cycle
         if (.not. is_opposed(status%pass, own, positions, i, local_normal(local))) cycle
-        if (is_closed .and. -local_gap(local) > 2.0_wp*half_thickness(model, other, m)) cycle
+        if (near%is_closed .and. -local_gap(local) > 2.0_wp*half_thickness(model, other, m)) cycle
         closest = m
         least = square
       end do

@@ -4,13 +4,14 @@
 module near_segments_m
   use kinds_m, only : wp, long
   use sorting_m, only : sorted_order
-  use surfaces_m, only : surface_t
+  use surfaces_m, only : surface_t, has_closed_chain
   implicit none
   private
   public :: near_segments_t, cursor_t, sort_segments, start_near, next_near
 
   !> Segments of a surface by their middles.
   type :: near_segments_t
+    logical :: is_closed = .false.    !! the surface has a closed chain
     integer :: axis = 1               !! the coordinate they are sorted by
     real(wp) :: margin = 0.0_wp       !! half of the longest segment, with room for round-off, m
     integer, allocatable :: order(:)  !! (n_segment) segments
@@ -41,6 +42,7 @@ contains
         near%margin = max(near%margin, 0.51_wp*norm2(two - one))
       end associate
     end do
+    near%is_closed = has_closed_chain(surface)
     near%axis = maxloc(maxval(middle, 2) - minval(middle, 2), 1)
     ! Reals that are not negative rise as their bits do.
     near%at = middle(near%axis, :)
