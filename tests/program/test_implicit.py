@@ -552,3 +552,20 @@ def test_a_node_that_round_off_moves_between_two_segments_is_in_equilibrium(slid
     done = slideline("d=out", f"ctype={ctype}", deck=patch(grids=grids, static=True, penalty=1.0e6))
     assert done.returncode == 0, done.stderr
     assert abs(numbers(tmp_path / "out/job.rcforc.csv", "fy")[-1]) == pytest.approx(1.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("ctype", (3, 7))
+def test_a_light_load_on_a_block_pushed_far_is_carried(slideline, tmp_path, ctype):
+    """The first energy is that of the push. An iteration at 1e-14 of it whose springs have just closed is no equilibrium: it gave
+    up to 80 times the load."""
+    load = 0.01
+    deck = implicit(1.0, 1.0, most_iterations=60)
+    lower, upper = (deck.part(part, points=4).elastic(1000.0, 1.0e6, 0.3, part).mesh(*grid(columns, 4, width, 1.0, corner), part=part)
+                    for part, (columns, width, corner) in enumerate(((40, 2.0, (0.0, 0.0)), (16, 1.6, (0.2, 1.0))), 1))
+    deck.node_set(1, lower[-41:]).node_set(2, upper[:17]).fix(lower[:41], x=1, y=1).curve(1, [(0.0, 0.0), (1.0, 1.0)])
+    for node, share in zip(upper[-17:], np.r_[0.5, np.ones(15), 0.5] / 16.0):
+        deck.prescribe(node, 1, 2, 1, 0.05).add("*LOAD_NODE_POINT", (int(node), 2, 1, -load * share))
+    deck.add("*CONTACT_2D_SLIDELINE", (-2, -1, ctype, 2, 1.0e8), (None, None, 1)).output(glstat=1.0, rcforc=1.0)
+    done = slideline("d=out", deck=deck)
+    assert done.returncode == 0, done.stderr
+    assert abs(numbers(tmp_path / "out/job.rcforc.csv", "fy")[-1]) == pytest.approx(load, rel=1e-6)
