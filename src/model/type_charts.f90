@@ -28,7 +28,7 @@ module type_charts_m
     0.02371_wp, 0.0405_wp, 0.03132_wp]
   real(wp), parameter :: sliding(n_type) = [0.0403_wp, 0.0402_wp, 0.0971_wp, 0.0312_wp, &
     0.0406_wp, 0.0284_wp, 0.0285_wp]
-  real(wp), parameter :: ironing(n_type) = [0.392_wp, 0.3764_wp, 0.1057_wp, 0.0918_wp, &
+  real(wp), parameter :: ironing(n_type) = [0.392_wp, 0.3548_wp, 0.1057_wp, 0.0918_wp, &
     0.1322_wp, 0.0884_wp, 0.0828_wp]
   !> Error estimate of each type in each kind of scene. All types are exact on matching faces.
   real(wp), parameter :: estimates(n_type, 4) = reshape([0.0_wp*patch, max(patch, hertz), &
