@@ -6,11 +6,11 @@
 !> where that is not allocated: the reader starts from a state of the same model. The first failure
 !> stays and ends the work; later variables stay unchanged.
 module archive_m
-  use, intrinsic :: iso_c_binding, only : c_null_ptr, c_ptr
-  use hdf5, only : hid_t, hsize_t, haddr_t, size_t, H5S_NULL_F, H5S_SIMPLE_F, &
-    H5D_CHUNKED_F, H5D_COMPACT_F, H5D_CONTIGUOUS_F, H5L_TYPE_HARD_F, h5dclose_f, &
+  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char, c_null_ptr, c_ptr
+  use hdf5, only : hid_t, hsize_t, size_t, H5S_NULL_F, H5S_SIMPLE_F, &
+    H5D_CHUNKED_F, H5D_COMPACT_F, H5D_CONTIGUOUS_F, h5dclose_f, &
     h5dget_create_plist_f, h5dget_space_f, h5dget_storage_size_f, h5dget_type_f, h5dopen_f, &
-    h5dread_f, h5lexists_f, h5lget_info_f, h5pclose_f, h5pget_external_count_f, h5pget_layout_f, &
+    h5dread_f, h5lexists_f, h5pclose_f, h5pget_external_count_f, h5pget_layout_f, &
     h5sclose_f, h5screate_f, h5screate_simple_f, h5sget_simple_extent_dims_f, &
     h5sget_simple_extent_ndims_f, h5sget_simple_extent_type_f, h5tclose_f, h5tequal_f
   use errors_m, only : status_input
@@ -43,6 +43,22 @@ module archive_m
     procedure :: enter => enter_folder
     procedure :: text
   end type archive_t
+
+  !> Property list H5P_DEFAULT of C.
+  integer(hid_t), parameter :: default_list = 0
+
+  interface
+    !> What a soft or external link points to; < 0 for a hard link, which has no value. The Fortran
+    !> interface to the kind of a link (h5lget_info_f) differs between HDF5 1.10 and 1.12.
+    function c_get_link_value(id, name, text, size, list) bind(c, name='H5Lget_val') result(status)
+      import :: c_char, c_int, hid_t, size_t
+      integer(hid_t), value :: id, list
+      character(kind=c_char), intent(in) :: name(*) !! ends with a null
+      character(kind=c_char), intent(out) :: text   !! the first `size` characters
+      integer(size_t), value :: size
+      integer(c_int) :: status
+    end function c_get_link_value
+  end interface
 
 contains
 
@@ -222,17 +238,13 @@ contains
     class(archive_t), intent(in) :: archive
     character(*), intent(in) :: name
     logical :: is_hard
-    integer :: status, kind_of_link, encoding, token
-    integer(haddr_t) :: address
-    integer(size_t) :: length
-    logical :: has_order
+    integer :: status
+    character(kind=c_char) :: first
 
     call h5lexists_f(archive%id, archive%folder//name, is_hard, status)
     is_hard = is_hard .and. status >= 0
-    if (.not. is_hard) return
-    call h5lget_info_f(archive%id, archive%folder//name, encoding, token, has_order, &
-      kind_of_link, address, length, status)
-    is_hard = status >= 0 .and. kind_of_link == H5L_TYPE_HARD_F
+    if (is_hard) is_hard = c_get_link_value(archive%id, archive%folder//name//c_null_char, first, &
+      1_size_t, default_list) < 0
   end function is_hard
 
   !> Layout of an open dataset stored in the file itself; -1: external storage or a virtual dataset.

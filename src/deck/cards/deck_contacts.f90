@@ -416,7 +416,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: contacts(:)
     type(model_t), intent(in) :: model
-    integer, allocatable :: body_of(:), n_interface(:), last(:)
+    integer, allocatable :: body_of(:), n_interface(:), last(:), nodes(:)
     integer :: i, k, pass
 
     allocate (body_of(model%mesh%n_node), n_interface(0:size(model%rigids)), &
@@ -431,19 +431,18 @@ contains
       do i = 1, size(contacts)
         if (contacts(i)%contact%penalty_unit /= penalty_implicit) cycle
         last(0) = i
-        associate (nodes => [contacts(i)%contact%slave%nodes, contacts(i)%contact%master%nodes])
-          do k = 1, size(nodes)
-            associate (body => body_of(nodes(k)))
-              if (last(body) == i) cycle
-              last(body) = i
-              if (pass == 1) n_interface(body) = n_interface(body) + 1
-              if (pass == 2 .and. n_interface(body) > 1) call refuse(deck, contacts(i), &
-                'cannot share a free rigid body: part ' &
-                //to_text(model%parts(model%rigids(body)%part)%id) &
-                //' is in another interface with PUNIT 4 too')
-            end associate
-          end do
-        end associate
+        nodes = [contacts(i)%contact%slave%nodes, contacts(i)%contact%master%nodes]
+        do k = 1, size(nodes)
+          associate (body => body_of(nodes(k)))
+            if (last(body) == i) cycle
+            last(body) = i
+            if (pass == 1) n_interface(body) = n_interface(body) + 1
+            if (pass == 2 .and. n_interface(body) > 1) call refuse(deck, contacts(i), &
+              'cannot share a free rigid body: part ' &
+              //to_text(model%parts(model%rigids(body)%part)%id) &
+              //' is in another interface with PUNIT 4 too')
+          end associate
+        end do
       end do
     end do
   end subroutine check_shared_bodies

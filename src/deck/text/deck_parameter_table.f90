@@ -35,16 +35,16 @@ contains
   subroutine add_parameter(parameters, item)
     type(parameters_t), intent(inout) :: parameters
     type(parameter_t), intent(in) :: item
+    integer :: k
 
     if (.not. allocated(parameters%items)) allocate (parameters%items(16))
     if (parameters%n == size(parameters%items)) &
       parameters%items = [parameters%items, parameters%items]
     parameters%n = parameters%n + 1
     parameters%items(parameters%n) = item
-    associate (last => parameters%last(name_hash(item%name)))
-      parameters%items(parameters%n)%next = last
-      last = parameters%n
-    end associate
+    k = name_hash(item%name)
+    parameters%items(parameters%n)%next = parameters%last(k)
+    parameters%last(k) = parameters%n
   end subroutine add_parameter
 
   !> Hash of a name.
